@@ -1,0 +1,153 @@
+"""Fokker-Planck solvers for stochastic fibre lay-down.
+
+The public names are loaded on first use, so that importing the package costs
+milliseconds.
+"""
+
+from __future__ import annotations
+
+import importlib
+import sys
+from types import ModuleType
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from fpsolve import diagnostics, initial, plotting
+    from fpsolve.curves import (
+        EllipticNozzle,
+        FixedBelt,
+        MovingBelt,
+        OscillatingNozzle,
+        RotatingNozzle,
+        TabulatedCurve,
+    )
+    from fpsolve.errors import (
+        ConfigurationError,
+        DomainTooSmallError,
+        FileFormatError,
+        FpsolveError,
+        GridMismatchError,
+        MassCorrectionError,
+        MassDriftError,
+        MemoryLimitError,
+        NonFiniteDensityError,
+        RunInterrupted,
+        SteadyStateError,
+    )
+    from fpsolve.grids import PhaseSpaceGrid
+    from fpsolve.io import load
+    from fpsolve.models import LayDownModel
+    from fpsolve.potentials import (
+        CallablePotential,
+        FreePotential,
+        IsotropicPotential,
+        LinearPotential,
+        PowerPotential,
+        QuadraticPotential,
+    )
+    from fpsolve.process import Process
+    from fpsolve.schemes import drift_kick, semi_lagrangian
+    from fpsolve.solution import Solution
+    from fpsolve.solve import solve
+    from fpsolve.steady_state import SteadyState, steady_state
+    from fpsolve.suggestions import suggest_grid, suggest_step
+
+_MODULES = {
+    "fpsolve.curves": (
+        "EllipticNozzle FixedBelt MovingBelt OscillatingNozzle RotatingNozzle "
+        "TabulatedCurve"
+    ),
+    "fpsolve.errors": (
+        "ConfigurationError DomainTooSmallError FileFormatError FpsolveError "
+        "GridMismatchError MassCorrectionError MassDriftError MemoryLimitError "
+        "NonFiniteDensityError RunInterrupted SteadyStateError"
+    ),
+    "fpsolve.grids": "PhaseSpaceGrid",
+    "fpsolve.io": "load",
+    "fpsolve.models": "LayDownModel",
+    "fpsolve.potentials": (
+        "CallablePotential FreePotential IsotropicPotential LinearPotential "
+        "PowerPotential QuadraticPotential"
+    ),
+    "fpsolve.process": "Process",
+    "fpsolve.schemes": "drift_kick semi_lagrangian",
+    "fpsolve.solution": "Solution",
+    "fpsolve.solve": "solve",
+    "fpsolve.steady_state": "SteadyState steady_state",
+    "fpsolve.suggestions": "suggest_grid suggest_step",
+}
+_SUBMODULES = ("diagnostics", "initial", "plotting")
+_HOME = {name: home for home, names in _MODULES.items() for name in names.split()}
+
+__all__ = [
+    "CallablePotential",
+    "ConfigurationError",
+    "DomainTooSmallError",
+    "EllipticNozzle",
+    "FileFormatError",
+    "FixedBelt",
+    "FpsolveError",
+    "FreePotential",
+    "GridMismatchError",
+    "IsotropicPotential",
+    "LayDownModel",
+    "LinearPotential",
+    "MassCorrectionError",
+    "MassDriftError",
+    "MemoryLimitError",
+    "MovingBelt",
+    "NonFiniteDensityError",
+    "OscillatingNozzle",
+    "PhaseSpaceGrid",
+    "PowerPotential",
+    "Process",
+    "QuadraticPotential",
+    "RotatingNozzle",
+    "RunInterrupted",
+    "Solution",
+    "SteadyState",
+    "SteadyStateError",
+    "TabulatedCurve",
+    "diagnostics",
+    "drift_kick",
+    "initial",
+    "load",
+    "plotting",
+    "semi_lagrangian",
+    "solve",
+    "steady_state",
+    "suggest_grid",
+    "suggest_step",
+]
+
+
+def __getattr__(name: str) -> Any:
+    if name == "__version__":
+        from importlib.metadata import version
+
+        return version("fpsolve")
+    if name in _SUBMODULES:
+        return importlib.import_module(f"fpsolve.{name}")
+    if name in _HOME:
+        value = getattr(importlib.import_module(_HOME[name]), name)
+        globals()[name] = value
+        return value
+    raise AttributeError(f"module 'fpsolve' has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)
+
+
+class _Package(ModuleType):
+    """The package, in which `fpsolve.solve` stays the function of that name.
+
+    Importing the module fpsolve.solve would bind it to the same name.
+    """
+
+    def __setattr__(self, name: str, value: object) -> None:
+        if not (name in _HOME and isinstance(value, ModuleType)):
+            super().__setattr__(name, value)
+
+
+sys.modules[__name__].__class__ = _Package

@@ -1,0 +1,77 @@
+"""Exponential decay rates fitted to a series."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.stats import linregress
+
+__all__ = ["DecayRate", "fit_decay"]
+
+Array = NDArray[np.float64]
+
+# Below this a relative entropy on a grid is rounding noise.
+NOISE_LEVEL = 1e-14
+FEWEST = 5
+
+
+@dataclass(frozen=True)
+class DecayRate:
+    """Rate λ of a quantity that falls like C e^{−λs}.
+
+    Attributes
+    ----------
+    rate, standard_error : float
+        λ and its standard error from the scatter about the line: how straight the
+        decay is on the window, not how well the run is resolved.
+    amplitude : float
+        C.
+    window : (float, float)
+        Range of s that was used.
+    """
+
+    rate: float
+    standard_error: float
+    amplitude: float
+    window: tuple[float, float]
+
+
+def fit_decay(
+    s: Array, values: Array, window: tuple[float, float] | None = None
+) -> DecayRate:
+    """λ and C of values ≈ C e^{−λs} by least squares on ln(values).
+
+    Parameters
+    ----------
+    s, values : ndarray, shape (n,)
+    window : (float, float), optional
+        Range of s; by default the second half of what lies above rounding noise.
+
+    Raises
+    ------
+    ValueError
+        If fewer than five positive values lie in the window.
+    """
+    usable = np.isfinite(values) & (values > NOISE_LEVEL)
+    if window is None and usable.any():
+        # After the first value at noise level nothing later can be trusted.
+        first_bad = np.argmin(usable) if not usable.all() else usable.size
+        last = s[max(first_bad - 1, 0)]
+        window = (float(s[0] + (last - s[0]) / 2), float(last))
+    start, stop = window if window is not None else (0.0, 0.0)
+    chosen = usable & (s >= start) & (s <= stop)
+    if np.count_nonzero(chosen) < FEWEST:
+        raise ValueError(
+            f"`window` must hold at least {FEWEST} values above {NOISE_LEVEL:g}, got "
+            f"{np.count_nonzero(chosen)} in [{start:g}, {stop:g}]; record more "
+            "steps, or fit earlier."
+        )
+    line = linregress(s[chosen], np.log(values[chosen]))
+    return DecayRate(
+        rate=-float(line.slope),
+        standard_error=float(line.stderr),
+        amplitude=float(np.exp(line.intercept)),
+        window=(start, stop),
+    )

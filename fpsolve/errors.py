@@ -1,0 +1,274 @@
+"""Exceptions a caller may want to catch; each carries its numbers as attributes.
+
+A wrong argument is an ordinary `ValueError` or `TypeError`. The classes here are for
+what shows only while a computation runs, and for files and configurations that come
+from elsewhere. All of them survive pickling, so that they cross process boundaries.
+"""
+
+from __future__ import annotations
+
+import copyreg
+import os
+from collections.abc import Callable
+from typing import Any
+
+__all__ = [
+    "ConfigurationError",
+    "DomainTooSmallError",
+    "FileFormatError",
+    "FpsolveError",
+    "GridMismatchError",
+    "MassCorrectionError",
+    "MassDriftError",
+    "MemoryLimitError",
+    "NonFiniteDensityError",
+    "RunError",
+    "RunInterrupted",
+    "SteadyStateError",
+]
+
+
+class FpsolveError(Exception):
+    """Base of every exception of fpsolve; catch it to catch them all."""
+
+    def __reduce__(self) -> tuple[Callable[..., Any], tuple[Any, ...], dict[str, Any]]:
+        # The default calls the constructor with the finished message as its only
+        # argument, which fails for every constructor that takes numbers.
+        return copyreg.__newobj__, (type(self), *self.args), self.__dict__  # type: ignore[attr-defined]
+
+
+class RunError(FpsolveError):
+    """A run stopped because going on would give a wrong density.
+
+    Attributes
+    ----------
+    solution : Solution or None
+        What the run had recorded until then; None when no run was involved.
+    """
+
+    solution: Any = None
+
+
+class MassDriftError(RunError):
+    """The mass ∫ p dξ dα moved away from its initial value.
+
+    Parameters
+    ----------
+    s : float
+        Arclength at which the drift was noticed.
+    drift : float
+        Relative deviation (mass - initial mass) / initial mass.
+    tolerance : float
+        Largest drift allowed.
+    """
+
+    def __init__(self, s: float, drift: float, tolerance: float) -> None:
+        super().__init__(
+            f"relative mass drift {drift:.2g} exceeds tolerance {tolerance:g} "
+            f"at s = {s:g}; use a conservative scheme, a smaller `ds`, or a larger "
+            "`mass_tolerance` if this drift is acceptable."
+        )
+        self.s = s
+        self.drift = drift
+        self.tolerance = tolerance
+
+
+class NonFiniteDensityError(RunError):
+    """The density holds a NaN or an infinity.
+
+    Parameters
+    ----------
+    s : float
+        Arclength at which it was noticed.
+    index : tuple of int
+        Index (i, j, k) of the first such cell in array order.
+    """
+
+    def __init__(self, s: float, index: tuple[int, ...]) -> None:
+        index = tuple(int(i) for i in index)
+        super().__init__(
+            f"the density is not finite at s = {s:g}, first at index {index}; "
+            "reduce `ds` or choose a scheme that is stable for this noise."
+        )
+        self.s = s
+        self.index = index
+
+
+class DomainTooSmallError(RunError):
+    """Too much mass sits at the boundary of the ξ box.
+
+    The box is periodic in ξ, so mass that reaches its boundary comes back on the
+    other side and the result is wrong.
+
+    Parameters
+    ----------
+    boundary_mass : float
+        Mass found next to the boundary of the box.
+    half_width : float or tuple of float
+        Half widths of the box.
+    s : float, optional
+        Arclength at which it was noticed.
+    tolerance : float, optional
+        Largest boundary mass allowed.
+    """
+
+    def __init__(
+        self,
+        boundary_mass: float,
+        half_width: float | tuple[float, float],
+        s: float | None = None,
+        tolerance: float | None = None,
+    ) -> None:
+        limit = "" if tolerance is None else f" exceeds tolerance {tolerance:g}"
+        place = "" if s is None else f" at s = {s:g}"
+        super().__init__(
+            f"boundary mass {boundary_mass:.2g}{limit}{place}: the box of half width "
+            f"{_half_width_text(half_width)} is too small; enlarge `half_width`."
+        )
+        self.boundary_mass = boundary_mass
+        self.half_width = half_width
+        self.s = s
+        self.tolerance = tolerance
+
+
+class MassCorrectionError(RunError):
+    """The weight θ of the adjusted advection left [0, 1].
+
+    Outside that interval the correction extrapolates, and rescaling would hide a
+    blow-up.
+
+    Parameters
+    ----------
+    s : float
+        Arclength at the beginning of the step.
+    theta : float
+        The weight found.
+    step : int
+        Number of the step, from 0.
+
+    References
+    ----------
+    [DHP99]_.
+    """
+
+    def __init__(self, s: float, theta: float, step: int) -> None:
+        super().__init__(
+            f"adjusted-advection weight theta = {theta:g} outside [0, 1] at s = {s:g} "
+            f"(step {step}); refine the grid, raise `interpolation_order`, or enlarge "
+            "`ds`: moving feet by η b ds² can restore no more mass than that. At low "
+            "noise the form `p` is unstable; use the form `h`."
+        )
+        self.s = s
+        self.theta = theta
+        self.step = step
+
+
+class GridMismatchError(FpsolveError, ValueError):
+    """An array does not have the shape of the grid.
+
+    Parameters
+    ----------
+    expected, got : tuple of int
+        Shape of the grid and shape of the array.
+    name : str, optional
+        Name of the argument.
+    """
+
+    def __init__(
+        self, expected: tuple[int, ...], got: tuple[int, ...], name: str = "p"
+    ) -> None:
+        super().__init__(
+            f"`{name}` must have the shape {expected} of the grid, got {got}."
+        )
+        self.expected = expected
+        self.got = got
+        self.name = name
+
+
+class MemoryLimitError(FpsolveError):
+    """A run would need more memory than it may use.
+
+    Parameters
+    ----------
+    required, available : int
+        Memory in bytes.
+    """
+
+    def __init__(self, required: int, available: int) -> None:
+        super().__init__(
+            f"the run needs {_bytes_text(required)} but {_bytes_text(available)} are "
+            "available; save fewer densities, choose a coarser grid, or raise "
+            "`memory_limit`."
+        )
+        self.required = required
+        self.available = available
+
+
+class SteadyStateError(FpsolveError):
+    """The search for a stationary density did not converge.
+
+    Parameters
+    ----------
+    residual : float
+        Residual reached.
+    tolerance : float
+        Residual asked for.
+    """
+
+    def __init__(self, residual: float, tolerance: float) -> None:
+        super().__init__(
+            f"steady state not reached: residual {residual:.2g} exceeds tolerance "
+            f"{tolerance:g}; allow more iterations or enlarge `tolerance`."
+        )
+        self.residual = residual
+        self.tolerance = tolerance
+
+
+class ConfigurationError(FpsolveError):
+    """A configuration file asks for something that does not exist or does not fit."""
+
+
+class FileFormatError(FpsolveError):
+    """A file is not what it should be.
+
+    Parameters
+    ----------
+    path : str or os.PathLike
+        The file.
+    reason : str
+        What is wrong with it, without a final full stop.
+    """
+
+    def __init__(self, path: str | os.PathLike[str], reason: str) -> None:
+        super().__init__(f"cannot read `{os.fspath(path)}`: {reason}.")
+        self.path = path
+        self.reason = reason
+
+
+class RunInterrupted(KeyboardInterrupt):
+    """The user interrupted a run; `solution` holds what it had recorded until then.
+
+    Parameters
+    ----------
+    solution : Solution
+        The partial result, with status "interrupted".
+    """
+
+    def __init__(self, solution: Any) -> None:
+        super().__init__("run interrupted; the partial result is in `solution`.")
+        self.solution = solution
+
+    def __reduce__(self) -> tuple[type[RunInterrupted], tuple[Any]]:
+        return type(self), (self.solution,)
+
+
+def _half_width_text(half_width: float | tuple[float, float]) -> str:
+    if isinstance(half_width, tuple):
+        return f"({half_width[0]:g}, {half_width[1]:g})"
+    return f"{half_width:g}"
+
+
+def _bytes_text(n_bytes: int) -> str:
+    if n_bytes < 2**30:
+        return f"{n_bytes / 2**20:.3g} MiB"
+    return f"{n_bytes / 2**30:.3g} GiB"

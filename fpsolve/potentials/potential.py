@@ -1,0 +1,132 @@
+"""What every potential offers, and what follows from a radial profile alone."""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from dataclasses import fields
+from functools import cached_property
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from fpsolve.potentials.partition import partition_function_of
+
+__all__ = ["Potential", "RadialPotential"]
+
+
+class Potential(ABC):
+    """A buckling potential B(ξ) on the plane.
+
+    B enters the model through -∇B(ξ)·τ⊥(α), equation (6), which turns the fibre back
+    to the reference curve, and through the stationary density exp(-B)/(2π Z),
+    equation (10). Everything is dimensionless.
+
+    A new potential is a frozen dataclass that defines `value`, `gradient`, `formula`
+    and `latex`, and `kind` if it is to be stored; `partition_function` then comes from
+    quadrature.
+
+    References
+    ----------
+    [KMW09]_, section 3.1, equations (6) and (10).
+    """
+
+    kind: ClassVar[str] = "custom"
+
+    @abstractmethod
+    def value(self, xi1: ArrayLike, xi2: ArrayLike) -> NDArray[np.float64]:
+        """B(ξ1, ξ2), float64, in the broadcast shape of the arguments."""
+
+    @abstractmethod
+    def gradient(
+        self, xi1: ArrayLike, xi2: ArrayLike
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """(∂B/∂ξ1, ∂B/∂ξ2), two float64 arrays in the broadcast shape."""
+
+    @property
+    @abstractmethod
+    def formula(self) -> str:
+        """B as plain text with the actual parameters, for instance "(ξ₁² + ξ₂²)/2"."""
+
+    @property
+    @abstractmethod
+    def latex(self) -> str:
+        """B as LaTeX with the actual parameters, without dollar signs."""
+
+    @property
+    def isotropic(self) -> bool:
+        """Whether B depends on ‖ξ‖ only."""
+        return False
+
+    def radial_value(self, r: ArrayLike) -> NDArray[np.float64]:
+        """B(r) of an isotropic potential, r >= 0; ValueError when it is not one."""
+        self._require_isotropic()
+        return self.value(r, 0.0)
+
+    def radial_derivative(self, r: ArrayLike) -> NDArray[np.float64]:
+        """B'(r) of an isotropic potential, r >= 0; ValueError when it is not one."""
+        self._require_isotropic()
+        return self.gradient(r, 0.0)[0]
+
+    @cached_property
+    def partition_function(self) -> float:
+        """Z = ∫ exp(-B(ξ)) dξ over the plane; `math.inf` when it does not exist."""
+        return partition_function_of(self.value)
+
+    @property
+    def normalisable(self) -> bool:
+        """Whether exp(-B) is integrable over the plane."""
+        return math.isfinite(self.partition_function)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return `kind` and the parameters as a JSON-able dictionary."""
+        parameters = {
+            field.name: getattr(self, field.name)
+            for field in fields(self)  # type: ignore[arg-type]
+        }
+        return {"kind": self.kind, **parameters}
+
+    def _repr_latex_(self) -> str:
+        return f"$B(\\xi) = {self.latex}$"
+
+    def _require_isotropic(self) -> None:
+        if not self.isotropic:
+            raise ValueError(
+                f"`potential` must be isotropic to have a radial profile, got {self!r}."
+            )
+
+
+class RadialPotential(Potential):
+    """An isotropic potential B(‖ξ‖), given by its radial profile.
+
+    Subclasses define `radial_value` and `radial_derivative`. The gradient is
+    B'(r) ξ/r; at the origin, where ξ/r has no limit, it is defined as 0.
+    """
+
+    @property
+    def isotropic(self) -> bool:
+        """True."""
+        return True
+
+    @abstractmethod
+    def radial_value(self, r: ArrayLike) -> NDArray[np.float64]:
+        """B(r), r >= 0."""
+
+    @abstractmethod
+    def radial_derivative(self, r: ArrayLike) -> NDArray[np.float64]:
+        """B'(r), r >= 0; at 0 the limit from the right."""
+
+    def value(self, xi1: ArrayLike, xi2: ArrayLike) -> NDArray[np.float64]:
+        """B(‖ξ‖), float64, in the broadcast shape of the arguments."""
+        return self.radial_value(np.hypot(xi1, xi2))
+
+    def gradient(
+        self, xi1: ArrayLike, xi2: ArrayLike
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """B'(r) ξ/r, and 0 at the origin; two arrays in the broadcast shape."""
+        r = np.hypot(xi1, xi2)
+        # A profile may be singular at 0, so it is not asked there at all.
+        safe_r = np.where(r > 0, r, 1.0)
+        ratio = np.where(r > 0, self.radial_derivative(safe_r) / safe_r, 0.0)
+        return np.asarray(ratio * xi1), np.asarray(ratio * xi2)

@@ -1,0 +1,61 @@
+"""What made a result: versions, date, times; and word of compilation."""
+
+from __future__ import annotations
+
+import logging
+import platform
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from datetime import UTC, datetime
+from importlib.metadata import PackageNotFoundError, version
+from typing import Any
+
+from fpsolve._compilation import announce
+
+__all__ = ["Stopwatch", "announced_compilation", "versions"]
+
+LOGGER = logging.getLogger("fpsolve")
+PACKAGES = ("fpsolve", "numpy", "scipy", "numba", "xarray")
+
+
+def versions() -> dict[str, str]:
+    """Versions of Python, of fpsolve and of what it computes with."""
+    found = {"python": platform.python_version()}
+    for package in PACKAGES:
+        try:
+            found[package] = version(package)
+        except PackageNotFoundError:
+            found[package] = "not installed"
+    return found
+
+
+class Stopwatch:
+    """Wall and CPU time since it was made."""
+
+    def __init__(self) -> None:
+        self.wall, self.cpu = time.perf_counter(), time.process_time()
+
+    def provenance(self, n_steps: int) -> dict[str, Any]:
+        """Versions, date, seconds and number of steps, ready for a file."""
+        return {
+            "versions": versions(),
+            "date": datetime.now(UTC).isoformat(timespec="seconds"),
+            "wall_seconds": time.perf_counter() - self.wall,
+            "cpu_seconds": time.process_time() - self.cpu,
+            "n_steps": n_steps,
+        }
+
+
+@contextmanager
+def announced_compilation(aloud: bool) -> Iterator[None]:
+    """Log that kernels compile, and say so on the terminal if `aloud`."""
+
+    def tell(name: str) -> None:
+        LOGGER.info("compiling kernels, beginning with %s", name)
+        if aloud:
+            print("compiling kernels (once, then cached) …", file=sys.stderr)
+
+    with announce(tell):
+        yield

@@ -1,0 +1,104 @@
+"""Steps of a run: when to record, when to save."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+__all__ = ["Schedule", "make_schedule"]
+
+# Steps and saving points must fit the span to this many steps.
+FIT = 1e-6
+
+
+@dataclass(frozen=True)
+class Schedule:
+    """n_steps steps of ds from start, and the step numbers at which to stop.
+
+    Attributes
+    ----------
+    start, ds : float
+    n_steps : int
+    records : tuple of int
+        Steps at which diagnostics are recorded, beginning with 0.
+    saves : tuple of int
+        Steps at which the density is kept; a subset of `records`.
+    """
+
+    start: float
+    ds: float
+    n_steps: int
+    records: tuple[int, ...]
+    saves: tuple[int, ...]
+
+    def s(self, step: int) -> float:
+        """Arclength after a number of steps."""
+        return self.start + step * self.ds
+
+    def legs(self) -> Iterator[tuple[int, int]]:
+        """Pairs (from, to) of neighbouring records."""
+        return zip(self.records[:-1], self.records[1:], strict=True)
+
+    def refined(self) -> Schedule:
+        """The same stops with half the step."""
+        return Schedule(
+            self.start,
+            self.ds / 2,
+            2 * self.n_steps,
+            tuple(2 * step for step in self.records),
+            tuple(2 * step for step in self.saves),
+        )
+
+
+def make_schedule(
+    s_span: tuple[float, float],
+    ds: float,
+    save_at: Iterable[float] | None = None,
+    record_every: int = 1,
+) -> Schedule:
+    """Steps of a run over `s_span`, checked.
+
+    Raises
+    ------
+    ValueError
+        If ds is not positive, does not divide the span, or a saving point is not a
+        step.
+    """
+    start, end = (float(value) for value in s_span)
+    if not (math.isfinite(start) and math.isfinite(end) and end > start):
+        raise ValueError(
+            f"`s_span` must be (start, end) with start < end, got ({start:g}, {end:g})."
+        )
+    if not (math.isfinite(ds) and ds > 0):
+        raise ValueError(f"`ds` must be positive, got {ds:g}.")
+    if not (isinstance(record_every, int) and record_every >= 1):
+        raise ValueError(f"`record_every` must be a positive integer, got {record_every!r}.")
+    n_steps = round((end - start) / ds)
+    if n_steps < 1 or abs(n_steps * ds - (end - start)) > FIT * ds * max(n_steps, 1):
+        n_better = max(1, math.ceil((end - start) / ds - FIT))
+        raise ValueError(
+            f"`ds` must divide the span {end - start:g} into whole steps, got {ds:g}; "
+            f"use ds = {(end - start) / n_better:.12g}."
+        )
+    ds = (end - start) / n_steps
+    saves = tuple(sorted({_step_of(s, start, ds, n_steps) for s in save_at or (end,)}))
+    records = sorted({*range(0, n_steps, record_every), n_steps, *saves})
+    return Schedule(start, ds, n_steps, tuple(records), saves)
+
+
+def _step_of(s: float, start: float, ds: float, n_steps: int) -> int:
+    if not math.isfinite(s):
+        raise ValueError(f"`save_at` must hold finite numbers, got {s:g}.")
+    step = round((s - start) / ds)
+    if not 0 <= step <= n_steps:
+        raise ValueError(
+            f"`save_at` must lie in the span [{start:g}, {start + n_steps * ds:g}], "
+            f"got {s:g}."
+        )
+    if abs(start + step * ds - s) > FIT * max(1, n_steps) * ds:
+        raise ValueError(
+            f"`save_at` must hold multiples of ds = {ds:g} from {start:g}, got {s:g}; "
+            f"the nearest is {start + step * ds:g}."
+        )
+    return step

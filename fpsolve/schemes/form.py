@@ -1,0 +1,111 @@
+"""What a scheme evolves: the density p itself, or the ratio h with p = e^{−B} h."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fpsolve._kernels.functionals import row_sums, scale_rows
+from fpsolve.errors import GridMismatchError
+from fpsolve.grids import PhaseSpaceGrid
+from fpsolve.models import LayDownModel
+
+Array = NDArray[np.float64]
+
+# e^{−600} = 1e−261: cells beyond carry no mass, and dividing by less would overflow.
+DEEPEST = 600.0
+
+
+@dataclass
+class State:
+    """A run's unknown and its scratch array; a scheme owns what is in them.
+
+    Attributes
+    ----------
+    values, work : ndarray, shape grid.shape
+        Unknown (p or h) and scratch; they change places during a step.
+    target_mass : float
+        Mass the corrections restore: that of the initial density.
+    correction : float
+        Relative mass error removed in the last `advance`, signed.
+    theta : float
+        Smallest weight of the adjusted advection in the last `advance`.
+    n_steps : int
+        Steps made since the start.
+    """
+
+    values: Array
+    work: Array
+    target_mass: float
+    correction: float = 0.0
+    theta: float = 1.0
+    n_steps: int = 0
+
+    def swap(self) -> None:
+        """Exchange unknown and scratch."""
+        self.values, self.work = self.work, self.values
+
+
+@dataclass(frozen=True)
+class DensityForm:
+    """p = w u, with a weight w(ξ) that does not depend on α.
+
+    Parameters
+    ----------
+    grid : PhaseSpaceGrid
+    weight : ndarray, shape (n1, n2), or None
+        e^{−B} (up to a factor) for the balanced form; None for p itself.
+    """
+
+    grid: PhaseSpaceGrid
+    weight: Array | None
+    sums: Array = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "sums", np.empty(self.grid.shape[:2]))
+
+    def start(self, p0: Array) -> State:
+        """State of a run that begins at the density p0."""
+        p0 = self.grid.check(p0, "p0")
+        values = np.empty_like(p0)
+        weight = np.ones(self.sums.shape) if self.weight is None else self.weight
+        scale_rows(p0, 1.0 / weight, values)
+        row_sums(p0, self.sums)
+        return State(values, np.empty_like(p0), self.sums.sum() * self.grid.cell_volume)
+
+    def density(self, state: State) -> Array:
+        """The density p of a state; a view that the next step overwrites."""
+        if self.weight is None:
+            return state.values
+        scale_rows(state.values, self.weight, state.work)
+        return state.work
+
+    def mass(self, values: Array) -> float:
+        """∫ w u dξ dα by the midpoint rule."""
+        row_sums(values, self.sums)
+        weighted = self.sums if self.weight is None else self.sums * self.weight
+        return float(weighted.sum()) * self.grid.cell_volume
+
+    def rescale(self, state: State, factor: float) -> None:
+        """u ← factor · u."""
+        scale_rows(state.values, np.full(self.sums.shape, factor), state.values)
+
+
+def plain_form(grid: PhaseSpaceGrid) -> DensityForm:
+    """The density itself."""
+    return DensityForm(grid, None)
+
+
+def balanced_form(model: LayDownModel, grid: PhaseSpaceGrid) -> DensityForm:
+    """p = e^{−B} h: the equilibrium is h = const, kept to rounding when v = 0."""
+    potential = np.broadcast_to(model.potential.value(*grid.plane()), grid.shape[:2])
+    depth = np.minimum(potential - potential.min(), DEEPEST)
+    return DensityForm(grid, np.exp(-depth))
+
+
+def check_same_grid(grid: PhaseSpaceGrid, p: Array) -> None:
+    """Raise GridMismatchError unless p has the grid's shape."""
+    if np.shape(p) != grid.shape:
+        raise GridMismatchError(grid.shape, np.shape(p))

@@ -1,0 +1,140 @@
+"""R½ D R½: rotation by the buckling force and angular diffusion at fixed ξ."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fpsolve._kernels.rotation import rotate
+from fpsolve.grids import PhaseSpaceGrid
+from fpsolve.models import LayDownModel
+from fpsolve.schemes.rotation_table import RotationTable, rotation_table
+
+Array = NDArray[np.float64]
+
+# Richardson alternates between two steps; a table is the largest thing we keep.
+_TABLES_KEPT = 1
+
+
+class RotationDiffusion:
+    """R½ D R½ with R: ∂ₛp = ∂_α(∇B·τ⊥ p) and D: ∂ₛp = (A²/2) ∂_αα p, at fixed ξ.
+
+    Both parts are exact flows of trigonometric polynomials in α (MATH 1.4: with
+    ∇B = |∇B|(cos φ, sin φ) the tangent of (α − φ)/2 grows by e^{|∇B| s}), applied as
+    one small matrix per value of |∇B|; their symmetric composition is of order two
+    in ds. Keeps the mass of every row to rounding (`balanced=False`) or constants
+    (`balanced=True`, the equation of h = p/p_S). For a moving reference curve the
+    balanced form includes the reaction (w·∇B) h, w = −γ′, exactly in time. Works for
+    A = 0. Negative values can appear where p is under-resolved in α; `positive`
+    limits each row (Zhang and Shu), which keeps its mass.
+
+    Parameters
+    ----------
+    model : LayDownModel
+    grid : PhaseSpaceGrid
+        n_alpha even.
+    balanced : bool
+        Act on h = p/p_S instead of p.
+    positive : bool
+        Limit rows to non-negative values.
+
+    Raises
+    ------
+    ValueError
+        If n_alpha is odd.
+    """
+
+    def __init__(
+        self,
+        model: LayDownModel,
+        grid: PhaseSpaceGrid,
+        balanced: bool = False,
+        positive: bool = False,
+    ) -> None:
+        check_even(grid)
+        self.model, self.grid = model, grid
+        self.balanced, self.positive = balanced, positive
+        xi1, xi2 = grid.plane()
+        force1, force2 = model.potential.gradient(xi1, xi2)
+        shape = grid.shape[:2]
+        self.force = (np.broadcast_to(force1, shape), np.broadcast_to(force2, shape))
+        self.strength = np.hypot(*self.force).ravel()
+        self.phases = turning_phases(np.arctan2(self.force[1], self.force[0]), grid)
+        self.transforms = angular_transforms(grid)
+        self._tables: dict[float, RotationTable] = {}
+
+    def __call__(self, p: Array, s: float, ds: float, out: Array) -> None:
+        table = self.table(ds)
+        rotate(
+            p.reshape(-1, p.shape[2]),
+            table.rows,
+            table.matrix_of,
+            table.coefficients,
+            table.matrices,
+            self.phases,
+            table.damping,
+            self.reaction(s, ds),
+            *self.transforms,
+            self.positive,
+            out.reshape(-1, p.shape[2]),
+        )
+
+    def table(self, ds: float) -> RotationTable:
+        """The matrices of R½ D R½ for the step ds."""
+        if ds not in self._tables:
+            if len(self._tables) >= _TABLES_KEPT:
+                self._tables.clear()
+            self._tables[ds] = rotation_table(
+                self.strength,
+                self.model.diffusivity,
+                ds,
+                self.grid.shape[2],
+                self.balanced,
+            )
+        return self._tables[ds]
+
+    def reaction(self, s: float, ds: float) -> Array:
+        """Factor exp(−(γ(s + ds) − γ(s))·∇B) of the balanced form; (n1 n2,)."""
+        if not self.balanced or self.model.curve.fixed:
+            return np.ones(self.strength.size)
+        moved1, moved2 = self.model.curve.displacement(s, s + ds)
+        exponent = -(moved1 * self.force[0] + moved2 * self.force[1])
+        factor: Array = np.exp(exponent).ravel()
+        return factor
+
+    @property
+    def n_arrays(self) -> float:
+        """Memory held, in densities: phases, and at most three for the table."""
+        return 1.0 + 3.0
+
+
+def check_even(grid: PhaseSpaceGrid) -> None:
+    """Raise if the angle has an odd number of cells."""
+    if grid.shape[2] % 2:
+        raise ValueError(
+            f"`grid` must have an even number of angles, got {grid.shape[2]}; "
+            f"use {grid.shape[2] + 1}."
+        )
+
+
+def turning_phases(direction: Array, grid: PhaseSpaceGrid) -> Array:
+    """cos mφ and sin mφ of the direction φ of ∇B; shape (n1 n2, 2, n_alpha/2)."""
+    turned = np.exp(1j * direction.ravel())
+    phases = np.empty((turned.size, 2, grid.shape[2] // 2))
+    power = np.ones_like(turned)
+    for mode in range(phases.shape[2]):
+        phases[:, 0, mode], phases[:, 1, mode] = power.real, power.imag
+        power = power * turned
+    return phases
+
+
+def angular_transforms(grid: PhaseSpaceGrid) -> tuple[Array, Array, Array, Array]:
+    """Cosine and sine matrices on half the circle and their inverses; (M, M)."""
+    n_alpha = grid.shape[2]
+    modes = np.arange(n_alpha // 2)
+    angles = np.outer(grid.alpha[: n_alpha // 2], modes)
+    weight = np.where(modes == 0, 1.0, 2.0) / n_alpha
+    cosines, sines = np.cos(angles), np.sin(angles)
+    inverse_cosines = np.ascontiguousarray((cosines * weight).T)
+    inverse_sines = np.ascontiguousarray((sines * weight).T)
+    return cosines, sines, inverse_cosines, inverse_sines

@@ -1,0 +1,139 @@
+"""What a run leaves behind."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fpsolve import diagnostics
+from fpsolve.decay import DecayRate, fit_decay
+from fpsolve.grids import PhaseSpaceGrid
+from fpsolve.models import LayDownModel
+
+if TYPE_CHECKING:
+    import xarray
+
+__all__ = ["Solution"]
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """The densities p(ξ, α, s) that were saved, and series over every recorded step.
+
+    Every series is an attribute: `solution.s`, `mass`, `relative_entropy`,
+    `entropy_dissipation`, `minimum`, `boundary_mass`, `mass_correction`, the moments
+    `mean_xi1`, `mean_xi2`, `variance_xi1`, `variance_xi2`, `covariance`,
+    `mean_cos_alpha`, `mean_sin_alpha`, and `theta` for the semi-Lagrangian scheme.
+    All of shape (n_recorded,) and dimensionless.
+
+    Attributes
+    ----------
+    model : LayDownModel or None
+        None for a file whose potential or curve was the user's own code.
+    grid : PhaseSpaceGrid
+    scheme : dict
+        Name, order and options of the scheme.
+    ds : float
+        Step; with extrapolation the longer of the two.
+    series : dict of ndarray
+    saved_s : ndarray, shape (n_saved,)
+    densities : ndarray, shape (n_saved, n1, n2, n_alpha)
+    entropy_floor : float
+        Value H tends to on this grid; see `diagnostics.entropy_floor`.
+    status : str
+        "finished", "interrupted" or "failed".
+    message : str
+        Why the run ended.
+    errors : dict of ndarray, or None
+        Richardson estimates: "density_l1" (n_saved,) and one array per series.
+    provenance : dict
+        Versions, date, times, number of steps.
+    """
+
+    model: LayDownModel | None
+    grid: PhaseSpaceGrid
+    scheme: dict[str, Any]
+    ds: float
+    series: Mapping[str, Array]
+    saved_s: Array
+    densities: Array
+    entropy_floor: float
+    status: str = "finished"
+    message: str = ""
+    errors: Mapping[str, Array] | None = None
+    provenance: dict[str, Any] = field(default_factory=dict)
+
+    def __getattr__(self, name: str) -> Array:
+        # Only called for names that are not fields; guards against half-built
+        # objects, as pickle and copy make them.
+        series: Mapping[str, Array] = self.__dict__.get("series", {})
+        if name in series:
+            return series[name]
+        raise AttributeError(
+            f"Solution has no attribute {name!r}; its series are {', '.join(series)}."
+        )
+
+    def __dir__(self) -> list[str]:
+        return [*super().__dir__(), *self.series]
+
+    def __repr__(self) -> str:
+        reached = self.series["s"][-1] if len(self.series["s"]) else float("nan")
+        return (
+            f"Solution({self.status} at s = {reached:g}, {self.scheme['name']}, "
+            f"ds = {self.ds:g}, grid {self.grid.shape}, "
+            f"{len(self.saved_s)} saved densities)"
+        )
+
+    def density(self, s: float) -> Array:
+        """Saved density p at s; shape (n1, n2, n_alpha).
+
+        Raises
+        ------
+        ValueError
+            If no density was saved at s.
+        """
+        if self.saved_s.size:
+            nearest = int(np.argmin(np.abs(self.saved_s - s)))
+            if abs(self.saved_s[nearest] - s) <= 1e-9 * max(1.0, abs(s)):
+                return self.densities[nearest]
+        known = ", ".join(f"{value:g}" for value in self.saved_s) or "none"
+        raise ValueError(
+            f"`s` must be one of the saved values {known}, got {s:g}; "
+            "add it to `save_at` of the run."
+        )
+
+    @property
+    def final(self) -> Array:
+        """Last saved density; shape (n1, n2, n_alpha)."""
+        return self.density(self.saved_s[-1] if self.saved_s.size else np.nan)
+
+    def marginal(self, which: str, s: float) -> Array:
+        """∫ p at s over the other variables: "xi", "alpha", "xi1" or "xi2"."""
+        return diagnostics.marginal(self.density(s), self.grid, which)
+
+    def entropy_rate(self, window: tuple[float, float] | None = None) -> DecayRate:
+        """Rate λ of H − floor ~ e^{−λs}, fitted on a window of s; see `fit_decay`."""
+        return fit_decay(
+            self.series["s"],
+            self.series["relative_entropy"] - self.entropy_floor,
+            window,
+        )
+
+    def to_xarray(self) -> xarray.Dataset:
+        """Labelled Dataset with dims s, xi1, xi2, alpha (densities) and step (series)."""
+        from fpsolve.io import to_xarray
+
+        return to_xarray(self)
+
+    def save(self, path: str | Path, engine: str | None = None) -> Path:
+        """Write the solution to netCDF, or to zarr for a path that ends in .zarr."""
+        from fpsolve.io import save
+
+        return save(self, path, engine=engine)

@@ -1,0 +1,99 @@
+"""Exceptions carry their numbers, say what to do, and cross process boundaries."""
+
+import pickle
+
+import pytest
+
+from fpsolve import errors
+
+# One of each, with its message from beginning to end.
+EXAMPLES = [
+    (
+        errors.MassDriftError(s=0.25, drift=3.1e-5, tolerance=1e-10),
+        "relative mass drift 3.1e-05 exceeds tolerance 1e-10 at s = 0.25; use a "
+        "conservative scheme, a smaller `ds`, or a larger `mass_tolerance` if this "
+        "drift is acceptable.",
+    ),
+    (
+        errors.NonFiniteDensityError(s=1.5, index=(1, 2, 3)),
+        "the density is not finite at s = 1.5, first at index (1, 2, 3); reduce `ds` "
+        "or choose a scheme that is stable for this noise.",
+    ),
+    (
+        errors.DomainTooSmallError(0.02, 6.0),
+        "boundary mass 0.02: the box of half width 6 is too small; enlarge "
+        "`half_width`.",
+    ),
+    (
+        errors.DomainTooSmallError(0.02, (6.0, 5.0), s=1.0, tolerance=1e-3),
+        "boundary mass 0.02 exceeds tolerance 0.001 at s = 1: the box of half width "
+        "(6, 5) is too small; enlarge `half_width`.",
+    ),
+    (
+        errors.MassCorrectionError(s=0.1, theta=-15.0, step=3),
+        "adjusted-advection weight theta = -15 outside [0, 1] at s = 0.1 (step 3); "
+        "refine the grid, raise `interpolation_order`, or enlarge `ds`: moving feet by "
+        "η b ds² can restore no more mass than that. At low noise the form `p` is "
+        "unstable; use the form `h`.",
+    ),
+    (
+        errors.GridMismatchError((6, 7, 8), (6, 7), name="p0"),
+        "`p0` must have the shape (6, 7, 8) of the grid, got (6, 7).",
+    ),
+    (
+        errors.MemoryLimitError(required=3 * 2**30, available=2**29),
+        "the run needs 3 GiB but 512 MiB are available; save fewer densities, choose "
+        "a coarser grid, or raise `memory_limit`.",
+    ),
+    (
+        errors.SteadyStateError(residual=1e-3, tolerance=1e-8),
+        "steady state not reached: residual 0.001 exceeds tolerance 1e-08; allow more "
+        "iterations or enlarge `tolerance`.",
+    ),
+    (errors.ConfigurationError("no section `grid`."), "no section `grid`."),
+    (
+        errors.FileFormatError("run.nc", "it has no density"),
+        "cannot read `run.nc`: it has no density.",
+    ),
+]
+IDS = [type(error).__name__ for error, _ in EXAMPLES]
+
+
+@pytest.mark.parametrize(("error", "message"), EXAMPLES, ids=IDS)
+def test_message_states_the_numbers_and_the_remedy(error, message):
+    assert str(error) == message
+
+
+@pytest.mark.parametrize("error", [error for error, _ in EXAMPLES], ids=IDS)
+def test_every_error_is_caught_as_an_fpsolve_error(error):
+    assert isinstance(error, errors.FpsolveError)
+
+
+@pytest.mark.parametrize("error", [error for error, _ in EXAMPLES], ids=IDS)
+def test_an_error_survives_pickling_with_all_its_numbers(error):
+    copy = pickle.loads(pickle.dumps(error))
+    assert type(copy) is type(error)
+    assert str(copy) == str(error)
+    assert vars(copy) == vars(error)
+
+
+@pytest.mark.parametrize("error", [error for error, _ in EXAMPLES[:5]], ids=IDS[:5])
+def test_errors_of_a_run_can_carry_the_partial_solution(error):
+    assert isinstance(error, errors.RunError)
+    assert error.solution is None
+    copy = pickle.loads(pickle.dumps(error))
+    copy.solution = "partial"
+    assert pickle.loads(pickle.dumps(copy)).solution == "partial"
+
+
+def test_a_grid_mismatch_is_also_a_value_error():
+    with pytest.raises(ValueError, match=r"`p` must have the shape \(2, 2\)"):
+        raise errors.GridMismatchError((2, 2), (3,))
+
+
+def test_an_interruption_keeps_the_solution_and_is_a_keyboard_interrupt():
+    interruption = pickle.loads(pickle.dumps(errors.RunInterrupted("partial")))
+    assert isinstance(interruption, KeyboardInterrupt)
+    assert not isinstance(interruption, Exception)
+    assert interruption.solution == "partial"
+    assert str(interruption) == "run interrupted; the partial result is in `solution`."

@@ -1,0 +1,48 @@
+"""Imports go down the floors only, and the oracles never meet the solver."""
+
+import ast
+from pathlib import Path
+
+PACKAGE = Path(__file__).parents[1] / "fpsolve"
+FLOORS = {
+    "errors": 0, "_kernels": 0, "_checks": 0, "_compilation": 0,
+    "potentials": 1, "curves": 1, "models": 1,
+    "grids": 2, "initial": 2, "diagnostics": 2, "process": 2, "decay": 2,
+    "schemes": 3,
+    "solution": 4, "solve": 4, "recording": 4, "schedule": 4, "memory": 4,
+    "progress": 4, "provenance": 4, "extrapolation": 4, "steady_state": 4,
+    "suggestions": 4,
+    "io": 6, "plotting": 6, "config": 6, "cli": 6, "__main__": 6,
+}  # fmt: skip
+ENTRY_ONLY = {"matplotlib", "typer", "rich", "dask", "xarray", "pydantic"}
+
+
+def module_of(path):
+    return path.relative_to(PACKAGE).parts[0].removesuffix(".py")
+
+
+def imports_at_load(tree):
+    """Modules imported by top-level statements, those for type checkers aside."""
+    for node in tree.body:
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom) and node.module:
+            yield from (f"{node.module}.{alias.name}" for alias in node.names)
+
+
+def test_every_module_has_a_floor():
+    found = {module_of(path) for path in PACKAGE.rglob("*.py")} - {"__init__"}
+    assert found <= FLOORS.keys()
+
+
+def test_imports_go_down_the_floors_only():
+    for path in PACKAGE.rglob("*.py"):
+        own = FLOORS.get(module_of(path))
+        if own is None:
+            continue
+        for name in imports_at_load(ast.parse(path.read_text())):
+            parts = name.split(".")
+            if parts[0] == "fpsolve" and len(parts) > 1 and parts[1] in FLOORS:
+                assert FLOORS[parts[1]] <= own, f"{path.name} imports {name}"
+            if own < 6:
+                assert parts[0] not in ENTRY_ONLY, f"{path.name} imports {name}"
