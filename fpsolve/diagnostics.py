@@ -126,6 +126,9 @@ def relative_entropy(p: Array, grid: PhaseSpaceGrid, reference: Array) -> float:
     reference = as_field(reference)
     masses = np.sum(p), reference_sum(reference, grid)
     ratio = float(masses[0] / masses[1])
+    if not ratio > 0:
+        # No entropy without mass; the run's own checks say what went wrong.
+        return math.nan
     total = 0.0
     for part in slabs(grid):
         total += entropy_of_slab(p[part], reference[part] * ratio)

@@ -169,14 +169,15 @@ def interpolate_at_feet(h, feet, growth, n_points, limited, out):
 @njit(cache=True, parallel=True, fastmath={"contract"}, error_model="numpy")
 def interpolate_at_perturbed_feet(
     h, feet, growth, speed1, speed2, force1, force2, cosine, sine, angular,
-    n_points, limited, upper, out,
+    slope1, slope2, n_points, limited, upper, out,
 ):  # fmt: skip
-    """out = e^growth max (or min) of h at foot ± δ, δ the perturbation η b ds².
+    """out = e^growth max (or min) of e^{∓δ·∇B} h at foot ± δ, δ = η b ds².
 
     h, out (n1, n2, n_alpha); feet and growth as in `interpolate_at_feet`;
     speed1, speed2 (n_alpha,) the ξ-part of δ in cells; the α-part is
-    angular · (force1 sin α − force2 cos α) with forces (n1, n2). `upper` chooses
-    the maximum.
+    angular · (force1 sin α − force2 cos α) with forces (n1, n2). slope1, slope2
+    (n_alpha,) are the ξ-part of δ in units of length where h stands for e^{B} p,
+    zero where it is p itself. `upper` chooses the maximum.
     """
     n1, n2, n_alpha = h.shape
     grows = growth.size > 1
@@ -184,6 +185,7 @@ def interpolate_at_perturbed_feet(
         for j in range(n2):
             for k in range(n_alpha):
                 turn = angular * (force1[i, j] * sine[k] - force2[i, j] * cosine[k])
+                tilt = slope1[k] * force1[i, j] + slope2[k] * force2[i, j]
                 x, y, z = feet[0, i, j, k], feet[1, i, j, k], feet[2, i, j, k]
                 ahead = value_at(
                     h, x + speed1[k], y + speed2[k], z + turn, n_points, limited
@@ -191,6 +193,8 @@ def interpolate_at_perturbed_feet(
                 behind = value_at(
                     h, x - speed1[k], y - speed2[k], z - turn, n_points, limited
                 )
+                ahead *= np.exp(-tilt)
+                behind *= np.exp(tilt)
                 value = max(ahead, behind) if upper else min(ahead, behind)
                 if grows:
                     value *= np.exp(growth[i, j, k])

@@ -34,9 +34,11 @@ class AdjustedAdvection:
     is taken at feet x* ± η b ds², the larger of the two where Q* ≤ Q, the smaller
     otherwise; with its mass Q♯ the result is θ u* + (1 − θ) u♯ with
     θ = (Q − Q♯)/(Q* − Q♯), which has the mass Q to rounding. A weight outside [0, 1]
-    would extrapolate, so it is refused. The perturbation moves information by
-    η |b| ds², which keeps order 1 in ds globally where it is fully used and, as it is
-    used in the proportion 1 − θ, less than the interpolation error otherwise.
+    would extrapolate, so it is refused. In the balanced form it is the density
+    p = e^{−B} h that is taken at the moved feet: a correction is then possible for a
+    constant h too, which a moving belt needs. The correction changes p by no more
+    than the mass error it repairs, spread over the cells: it does not lower the
+    order of the scheme.
 
     Parameters
     ----------
@@ -136,9 +138,12 @@ class AdjustedAdvection:
         cosine, sine = np.cos(self.grid.alpha), np.sin(self.grid.alpha)
         d1, d2, d_alpha = self.grid.spacing
         reach = self.perturbation * ds**2
+        velocity1, velocity2 = reach * (cosine - speed1), reach * (sine - speed2)
+        weighted = 0.0 if self.form.weight is None else 1.0
         interpolate_at_perturbed_feet(
             state.values, feet.places, feet.growth,
-            reach / d1 * (cosine - speed1), reach / d2 * (sine - speed2),
+            velocity1 / d1, velocity2 / d2,
             *self.force, cosine, sine, reach / d_alpha,
+            weighted * velocity1, weighted * velocity2,
             self.points, self.limited, upper, self._spare,
         )  # fmt: skip

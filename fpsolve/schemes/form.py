@@ -16,6 +16,9 @@ Array = NDArray[np.float64]
 
 # e^{−600} = 1e−261: cells beyond carry no mass, and dividing by less would overflow.
 DEEPEST = 600.0
+# Interpolating h across such a range leaves errors that outgrow the density where
+# the mass is; B = r⁴/4 on a box of half width 4 is an example.
+LARGEST_CONTRAST = 1e8
 
 
 @dataclass
@@ -72,8 +75,20 @@ class DensityForm:
         values = np.empty_like(p0)
         weight = np.ones(self.sums.shape) if self.weight is None else self.weight
         scale_rows(p0, 1.0 / weight, values)
+        if self.weight is not None:
+            self._check_contrast(values)
         row_sums(p0, self.sums)
         return State(values, np.empty_like(p0), self.sums.sum() * self.grid.cell_volume)
+
+    def _check_contrast(self, values: Array) -> None:
+        mean = self.mass(values) / (self.weight.sum() * self.grid.cell_volume)
+        contrast = float(values.max()) / (mean / self.grid.shape[2])
+        if contrast > LARGEST_CONTRAST:
+            raise ValueError(
+                "`p0` must fall off like exp(-B) to be evolved as h = p/p_S, got "
+                f"p0/p_S up to {contrast:.1g} times its mean; evolve p itself "
+                '(`balanced=False`, or `form="p"`), or shrink `half_width`.'
+            )
 
     def density(self, state: State) -> Array:
         """The density p of a state; a view that the next step overwrites."""
