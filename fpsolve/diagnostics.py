@@ -138,7 +138,7 @@ def relative_entropy(p: Array, grid: PhaseSpaceGrid, reference: Array) -> float:
 def entropy_of_slab(p: Array, reference: Array) -> float:
     """Σ p ln(p/r) − p + r over some planes."""
     inverse = 1.0 / np.maximum(reference, SMALLEST)
-    logarithm = p * inverse
+    logarithm: Array = p * inverse
     np.maximum(logarithm, SMALLEST, out=logarithm)
     np.log(logarithm, out=logarithm)
     positive = np.einsum("ijk,ijk->", np.maximum(p, 0.0), logarithm)
@@ -203,7 +203,7 @@ def as_field(reference: Array) -> Array:
 def reference_sum(reference: Array, grid: PhaseSpaceGrid) -> float:
     """Sum of a reference over all cells of the grid."""
     repeats = grid.shape[2] // reference.shape[2]
-    return float(reference.sum()) * repeats
+    return float(reference.sum()) * float(repeats)
 
 
 def slabs(grid: PhaseSpaceGrid) -> Iterator[slice]:

@@ -17,7 +17,7 @@ NOT_EXTRAPOLATED = ("s", "minimum", "boundary_mass", "mass_correction", "theta")
 
 
 def extrapolated(coarse: Solution, fine: Solution, order: int) -> Solution:
-    """u = (2^q u_{ds/2} − u_{ds})/(2^q − 1) with the estimate |u_{ds/2} − u_{ds}|/(2^q − 1).
+    """u = (2^q u_{ds/2} − u_{ds})/(2^q − 1), estimate |u_{ds/2} − u_{ds}|/(2^q − 1).
 
     Densities and every scalar series (entropy, dissipation, mass, moments) are
     extrapolated separately, scalars being those of the two runs, which are

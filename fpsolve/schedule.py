@@ -73,7 +73,9 @@ def make_schedule(
     if not (math.isfinite(ds) and ds > 0):
         raise ValueError(f"`ds` must be positive, got {ds:g}.")
     if not (isinstance(record_every, int) and record_every >= 1):
-        raise ValueError(f"`record_every` must be a positive integer, got {record_every!r}.")
+        raise ValueError(
+            f"`record_every` must be a positive integer, got {record_every!r}."
+        )
     n_steps = round((end - start) / ds)
     if n_steps < 1 or abs(n_steps * ds - (end - start)) > FIT * ds * max(n_steps, 1):
         n_better = max(1, math.ceil((end - start) / ds - FIT))

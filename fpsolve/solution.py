@@ -75,7 +75,8 @@ class Solution:
         # objects, as pickle and copy make them.
         series: Mapping[str, Array] = self.__dict__.get("series", {})
         if name in series:
-            return series[name]
+            found: Array = series[name]
+            return found
         raise AttributeError(
             f"Solution has no attribute {name!r}; its series are {', '.join(series)}."
         )
@@ -102,7 +103,8 @@ class Solution:
         if self.saved_s.size:
             nearest = int(np.argmin(np.abs(self.saved_s - s)))
             if abs(self.saved_s[nearest] - s) <= 1e-9 * max(1.0, abs(s)):
-                return self.densities[nearest]
+                found: Array = self.densities[nearest]
+                return found
         known = ", ".join(f"{value:g}" for value in self.saved_s) or "none"
         raise ValueError(
             f"`s` must be one of the saved values {known}, got {s:g}; "
@@ -127,7 +129,7 @@ class Solution:
         )
 
     def to_xarray(self) -> xarray.Dataset:
-        """Labelled Dataset with dims s, xi1, xi2, alpha (densities) and step (series)."""
+        """Labelled Dataset: densities (s, xi1, xi2, alpha), series over step."""
         from fpsolve.io import to_xarray
 
         return to_xarray(self)

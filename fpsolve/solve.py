@@ -127,7 +127,9 @@ def solve(
         solution = coarse.complete(report, 0, n_total)
         if extrapolate:
             fine = Run(scheme, p0, schedule.refined(), reference, tolerances)
-            refined = fine.complete(report, schedule.n_steps, n_total, fallback=solution)
+            refined = fine.complete(
+                report, schedule.n_steps, n_total, fallback=solution
+            )
             solution = extrapolated(solution, refined, scheme.order)
     return solution
 

@@ -1,4 +1,4 @@
-"""Stationary densities: explicit on a fixed belt, by Krylov iteration on a moving one."""
+"""Stationary densities: explicit on a fixed belt, by Krylov iteration otherwise."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ class SteadyState:
         return diagnostics.marginal(self.density, self.grid, which)
 
     def moments(self) -> dict[str, float]:
-        """E ξ, covariance of ξ, E cos α (= −v exactly, any potential), E sin α (= 0)."""
+        """E ξ, covariance of ξ, E cos α (−v for every potential), E sin α (0)."""
         return diagnostics.moments(self.density, self.grid)
 
 

@@ -51,6 +51,7 @@ class SuggestedStep(float):
     reason: str
 
     def __new__(cls, ds: float, reason: str) -> SuggestedStep:
+        """Make a step with its reason."""
         step = super().__new__(cls, ds)
         step.reason = reason
         return step
@@ -125,8 +126,8 @@ def suggest_step(
 def suggest_grid(model: LayDownModel, tolerance: float = 1e-2) -> SuggestedGrid:
     """Box and cells for an L1 error of about `tolerance`, from the measured laws.
 
-    The box holds all of e^{−B} but a tenth of the tolerance (5e-5 at most), moved by the belt
-    (statement 1.5 of MATH: |∇B| = A²k/2 with I₁(k)/I₀(k) = v). The cells resolve
+    The box holds all of e^{−B} but a tenth of the tolerance (5e-5 at most), moved by
+    the belt: |∇B| = A²k/2 with I₁(k)/I₀(k) = v, from E cos α = −v. The cells resolve
     features half as wide as the equilibrium with eight-point interpolation; a
     narrower start needs more. Cells and angles grow as the noise falls.
 
@@ -189,7 +190,8 @@ def check_tolerance(tolerance: float) -> None:
 
 def splitting_coefficient(model: LayDownModel, mean_force: float) -> float:
     """C of the splitting error C ds²."""
-    return FORCE_COEFFICIENT * (1 + mean_force / 2) + NOISE_COEFFICIENT * model.noise**2
+    spread = NOISE_COEFFICIENT * model.noise * model.noise
+    return FORCE_COEFFICIENT * (1 + mean_force / 2) + spread
 
 
 def mean_square_force(model: LayDownModel, grid: PhaseSpaceGrid) -> float:
@@ -203,7 +205,7 @@ def mean_square_force(model: LayDownModel, grid: PhaseSpaceGrid) -> float:
 
 def feature_width(model: LayDownModel) -> float:
     """Half the smaller standard deviation of e^{−B}, less where noise is small."""
-    narrowing = min(1.0, max(model.noise, LEAST_NOISE) ** FILAMENTS)
+    narrowing = min(1.0, math.pow(max(model.noise, LEAST_NOISE), FILAMENTS))
     if not model.potential.normalisable:
         return FEATURE * narrowing
     xi1, xi2, weight = sampled(model.potential)
@@ -251,7 +253,8 @@ def belt_shift(model: LayDownModel) -> float:
     speed = abs(model.belt_speed)
     if speed == 0:
         return 0.0
-    force = 0.5 * model.noise**2 * brentq(lambda k: i1e(k) / i0e(k) - speed, 0.0, 1e6)
+    opening = float(brentq(lambda k: i1e(k) / i0e(k) - speed, 0.0, 1e6))
+    force = 0.5 * model.noise * model.noise * opening
 
     def excess(x: float) -> float:
         return float(model.potential.gradient(x, 0.0)[0]) - force

@@ -8,6 +8,7 @@ the entropy never rises; equilibrium is reached to rounding in the balanced form
 from __future__ import annotations
 
 import argparse
+from itertools import pairwise
 
 import numpy as np
 from reporting import Report
@@ -52,11 +53,11 @@ def main() -> None:
         rows = []
         for noise in (1.0,) if quick else (0.5, 1.0, 2.0):
             found = [defect(make, noise, ds, shape) for ds in steps]
-            rows.append(
-                {"scheme": name, "A": noise}
-                | {f"defect, ds = {ds}": one["defect"] for ds, one in zip(steps, found, strict=True)}
-            )  # fmt: skip
-            for coarse, fine in zip(found[:-1], found[1:], strict=True):
+            row = {"scheme": name, "A": noise}
+            for ds, one in zip(steps, found, strict=True):
+                row[f"defect, ds = {ds}"] = one["defect"]
+            rows.append(row)
+            for coarse, fine in pairwise(found):
                 gain = coarse["defect"] / fine["defect"]
                 report.check(f"{name}, A = {noise}: gain of a halving", gain, ">", 3.0)
             rise = max(one["rise"] for one in found)

@@ -47,9 +47,7 @@ def quintic_weights(f):
 @njit(cache=True, fastmath={"contract"}, error_model="numpy")
 def line_cubic(row, k, w):
     """Σ_c w[c] row[k[c]] over four points."""
-    return (
-        w[0] * row[k[0]] + w[1] * row[k[1]] + w[2] * row[k[2]] + w[3] * row[k[3]]
-    )
+    return w[0] * row[k[0]] + w[1] * row[k[1]] + w[2] * row[k[2]] + w[3] * row[k[3]]
 
 
 @njit(cache=True, fastmath={"contract"}, error_model="numpy")

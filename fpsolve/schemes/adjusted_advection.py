@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -116,7 +117,9 @@ class AdjustedAdvection:
             self._restore(state, feet, mass, s, ds)
         state.swap()
 
-    def _restore(self, state: State, feet: Feet, mass: float, s: float, ds: float) -> None:
+    def _restore(
+        self, state: State, feet: Feet, mass: float, s: float, ds: float
+    ) -> None:
         target = state.target_mass
         if abs(mass - target) <= ROUNDING * target:
             state.work *= target / mass
@@ -140,7 +143,8 @@ class AdjustedAdvection:
         reach = self.perturbation * ds**2
         velocity1, velocity2 = reach * (cosine - speed1), reach * (sine - speed2)
         weighted = 0.0 if self.form.weight is None else 1.0
-        interpolate_at_perturbed_feet(
+        kernel: Any = interpolate_at_perturbed_feet
+        kernel(
             state.values, feet.places, feet.growth,
             velocity1 / d1, velocity2 / d2,
             *self.force, cosine, sine, reach / d_alpha,

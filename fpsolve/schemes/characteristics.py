@@ -96,7 +96,7 @@ class Characteristics:
         # position only, never through a derivative.
         xi1, xi2, alpha = arrival
         stages = []
-        offset = (0.0, 0.0, 0.0)
+        offset: tuple[Array | float, ...] = (0.0, 0.0, 0.0)
         for back, weight in ((0.0, 0.5), (0.5, 0.5), (0.5, 1.0), (1.0, 0.0)):
             moved1, moved2 = self.model.curve.displacement(s + ds - back * ds, s + ds)
             rates = self._rates(
@@ -106,13 +106,14 @@ class Characteristics:
             stages.append(rates)
             offset = tuple(weight * ds * rate for rate in rates[:3])
         path1, path2, turn, growth = (
-            ds / 6 * (a + 2 * b + 2 * c + d)
-            for a, b, c, d in zip(*stages, strict=True)
+            ds / 6 * (a + 2 * b + 2 * c + d) for a, b, c, d in zip(*stages, strict=True)
         )
         moved1, moved2 = self.model.curve.displacement(s, s + ds)
         return xi1 - path1 + moved1, xi2 - path2 + moved2, alpha - turn, growth
 
-    def _rates(self, xi1: Array, xi2: Array, alpha: Array, s: float) -> tuple[Array, ...]:
+    def _rates(
+        self, xi1: Array, xi2: Array, alpha: Array, s: float
+    ) -> tuple[Array, ...]:
         cosine, sine = np.cos(alpha), np.sin(alpha)
         force1, force2 = self.model.potential.gradient(xi1, xi2)
         turn = force1 * sine - force2 * cosine

@@ -59,6 +59,7 @@ class ImplicitDiffusion:
         self._factors: dict[float, Elimination] = {}
 
     def __call__(self, p: Array, s: float, ds: float, out: Array) -> None:
+        """Advance p from s to s + ds into `out`."""
         if self.diffusivity == 0.0:
             out[...] = p
             return

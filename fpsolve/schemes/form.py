@@ -76,12 +76,12 @@ class DensityForm:
         weight = np.ones(self.sums.shape) if self.weight is None else self.weight
         scale_rows(p0, 1.0 / weight, values)
         if self.weight is not None:
-            self._check_contrast(values)
+            self._check_contrast(values, self.weight)
         row_sums(p0, self.sums)
         return State(values, np.empty_like(p0), self.sums.sum() * self.grid.cell_volume)
 
-    def _check_contrast(self, values: Array) -> None:
-        mean = self.mass(values) / (self.weight.sum() * self.grid.cell_volume)
+    def _check_contrast(self, values: Array, weight: Array) -> None:
+        mean = self.mass(values) / (weight.sum() * self.grid.cell_volume)
         contrast = float(values.max()) / (mean / self.grid.shape[2])
         if contrast > LARGEST_CONTRAST:
             raise ValueError(

@@ -64,6 +64,7 @@ class RotationDiffusion:
         self._tables: dict[float, RotationTable] = {}
 
     def __call__(self, p: Array, s: float, ds: float, out: Array) -> None:
+        """Advance p from s to s + ds into `out`."""
         table = self.table(ds)
         rotate(
             p.reshape(-1, p.shape[2]),

@@ -89,7 +89,8 @@ class SemiLagrangian:
 
     def advance(self, state: State, s: float, ds: float, n_steps: int = 1) -> None:
         """Advance by n_steps from s; the state keeps the smallest θ and the
-        largest correction."""
+        largest correction.
+        """
         corrections, weights = [], []
         for step in range(n_steps):
             self._step(state, s + step * ds, ds)

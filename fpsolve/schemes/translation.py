@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -57,9 +59,10 @@ class Translation:
         return (np.cos(alpha) * ds - moved1) / d1, (np.sin(alpha) * ds - moved2) / d2
 
     def __call__(self, p: Array, s: float, ds: float, out: Array) -> None:
+        """Advance p from s to s + ds into `out`."""
         taps = self._remembered_taps(s, ds)
         arguments = [item for pair in taps for item in pair]
-        kernel = translate_positive if self.positive else translate
+        kernel: Any = translate_positive if self.positive else translate
         kernel(p, *arguments, out)
 
     def _remembered_taps(self, s: float, ds: float) -> tuple[Taps, ...]:
