@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -24,8 +25,11 @@ class DecayRate:
     Attributes
     ----------
     rate, standard_error : float
-        λ and its standard error from the scatter about the line: how straight the
-        decay is on the window, not how well the run is resolved.
+        λ and how straight the decay is on the window: the standard error of the fit
+        and half the difference between its two halves, added as squares. The values
+        of a run are no independent measurements, so the scatter about the line alone
+        would promise too much where the decay still bends or oscillates. It does not
+        say how well the run is resolved.
     amplitude : float
         C.
     window : (float, float)
@@ -68,10 +72,19 @@ def fit_decay(
             f"{np.count_nonzero(chosen)} in [{start:g}, {stop:g}]; record more "
             "steps, or fit earlier."
         )
-    line = linregress(s[chosen], np.log(values[chosen]))
+    places, logarithms = s[chosen], np.log(values[chosen])
+    line = linregress(places, logarithms)
     return DecayRate(
         rate=-float(line.slope),
-        standard_error=float(line.stderr),
+        standard_error=math.hypot(line.stderr, bend(places, logarithms) / 2),
         amplitude=float(np.exp(line.intercept)),
         window=(start, stop),
     )
+
+
+def bend(places: Array, values: Array) -> float:
+    """Difference between the slopes of the two halves of a series."""
+    middle = places.size // 2 + 1
+    first = np.polyfit(places[:middle], values[:middle], 1)[0]
+    second = np.polyfit(places[middle - 2 :], values[middle - 2 :], 1)[0]
+    return float(abs(first - second))
