@@ -9,6 +9,7 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from datetime import UTC, datetime
+from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from typing import Any
 
@@ -20,15 +21,21 @@ LOGGER = logging.getLogger("fpsolve")
 PACKAGES = ("fpsolve", "numpy", "scipy", "numba", "xarray")
 
 
-def versions() -> dict[str, str]:
-    """Versions of Python, of fpsolve and of what it computes with."""
+@cache
+def known_versions() -> tuple[tuple[str, str], ...]:
+    """Name and version of Python, of fpsolve and of what it computes with."""
     found = {"python": platform.python_version()}
     for package in PACKAGES:
         try:
             found[package] = version(package)
         except PackageNotFoundError:
             found[package] = "not installed"
-    return found
+    return tuple(found.items())
+
+
+def versions() -> dict[str, str]:
+    """Versions of Python, of fpsolve and of what it computes with."""
+    return dict(known_versions())
 
 
 class Stopwatch:

@@ -6,6 +6,8 @@ import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
+from fpsolve._checks import check_integer
+
 __all__ = ["Schedule", "make_schedule"]
 
 # Steps and saving points must fit the span to this many steps.
@@ -64,6 +66,8 @@ def make_schedule(
     ValueError
         If ds is not positive, does not divide the span, or a saving point is not a
         step.
+    TypeError
+        If `record_every` is not an integer.
     """
     start, end = (float(value) for value in s_span)
     if not (math.isfinite(start) and math.isfinite(end) and end > start):
@@ -72,10 +76,7 @@ def make_schedule(
         )
     if not (math.isfinite(ds) and ds > 0):
         raise ValueError(f"`ds` must be positive, got {ds:g}.")
-    if not (isinstance(record_every, int) and record_every >= 1):
-        raise ValueError(
-            f"`record_every` must be a positive integer, got {record_every!r}."
-        )
+    record_every = check_integer("record_every", record_every, at_least=1)
     n_steps = round((end - start) / ds)
     if n_steps < 1 or abs(n_steps * ds - (end - start)) > FIT * ds * max(n_steps, 1):
         n_better = max(1, math.ceil((end - start) / ds - FIT))
@@ -84,7 +85,8 @@ def make_schedule(
             f"use ds = {(end - start) / n_better:.12g}."
         )
     ds = (end - start) / n_steps
-    saves = tuple(sorted({_step_of(s, start, ds, n_steps) for s in save_at or (end,)}))
+    stops = (end,) if save_at is None else save_at
+    saves = tuple(sorted({_step_of(s, start, ds, n_steps) for s in stops}))
     records = sorted({*range(0, n_steps, record_every), n_steps, *saves})
     return Schedule(start, ds, n_steps, tuple(records), saves)
 

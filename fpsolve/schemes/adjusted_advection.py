@@ -131,7 +131,7 @@ class AdjustedAdvection:
         theta = (target - other) / (mass - other) if mass != other else math.inf
         state.theta = theta
         if not 0.0 <= theta <= 1.0:
-            raise MassCorrectionError(s + ds, theta, state.n_steps)
+            raise MassCorrectionError(s, theta, state.n_steps)
         blend(state.work, self._spare, theta, state.work)
 
     def _perturbed_values(

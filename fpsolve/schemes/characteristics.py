@@ -13,7 +13,7 @@ from fpsolve.models import LayDownModel
 Array = NDArray[np.float64]
 
 # Planes of constant ξ1 traced together: temporaries stay a small part of a density.
-CELLS_PER_SLAB = 65536
+CELLS_PER_SLAB = 8192
 
 
 @dataclass(frozen=True)

@@ -8,12 +8,13 @@ from numpy.typing import NDArray
 from fpsolve._kernels.rotation import rotate
 from fpsolve.grids import PhaseSpaceGrid
 from fpsolve.models import LayDownModel
-from fpsolve.schemes.rotation_table import RotationTable, rotation_table
+from fpsolve.schemes.rotation_table import (
+    LARGEST_TABLE,
+    RotationTable,
+    rotation_table,
+)
 
 Array = NDArray[np.float64]
-
-# Richardson alternates between two steps; a table is the largest thing we keep.
-_TABLES_KEPT = 1
 
 
 class RotationDiffusion:
@@ -83,16 +84,22 @@ class RotationDiffusion:
     def table(self, ds: float) -> RotationTable:
         """The matrices of R½ D R½ for the step ds."""
         if ds not in self._tables:
-            if len(self._tables) >= _TABLES_KEPT:
-                self._tables.clear()
-            self._tables[ds] = rotation_table(
+            table = rotation_table(
                 self.strength,
                 self.model.diffusivity,
                 ds,
                 self.grid.shape[2],
                 self.balanced,
             )
+            self._make_room(table.nbytes)
+            self._tables[ds] = table
         return self._tables[ds]
+
+    def _make_room(self, nbytes: int) -> None:
+        # Richardson alternates between two steps: keep both tables if they fit.
+        held = sum(table.nbytes for table in self._tables.values())
+        if held + nbytes > LARGEST_TABLE * self.grid.nbytes:
+            self._tables.clear()
 
     def reaction(self, s: float, ds: float) -> Array:
         """Factor exp(−(γ(s + ds) − γ(s))·∇B) of the balanced form; (n1 n2,)."""
@@ -106,7 +113,7 @@ class RotationDiffusion:
     @property
     def n_arrays(self) -> float:
         """Memory held, in densities: phases, and at most three for the table."""
-        return 1.0 + 3.0
+        return 1.0 + LARGEST_TABLE
 
 
 def check_even(grid: PhaseSpaceGrid) -> None:

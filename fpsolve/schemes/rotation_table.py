@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve._kernels.rotation import moebius_powers
+from fpsolve._kernels.rotation import rotation_matrices
 
 Array = NDArray[np.float64]
 
@@ -42,6 +42,11 @@ class RotationTable:
     coefficients: Array
     matrices: Array
     damping: float
+
+    @property
+    def nbytes(self) -> int:
+        """Memory of the matrices, the largest part."""
+        return self.matrices.nbytes
 
 
 def rotation_table(
@@ -86,18 +91,8 @@ def opening(strength: Array, ds: float) -> Array:
 
 def matrices_at(angles: Array, heat: Array, balanced: bool) -> Array:
     """R½ D R½ at the given ψ; shape (angles.size, M, M), mode in, mode out."""
-    half = heat.size
-    matrices = np.empty((angles.size, half, half))
-    rotation = np.empty((half, half))
-    for index, angle in enumerate(angles):
-        if balanced:
-            moebius_powers(-np.cos(angle), half, rotation)
-            # The mean of h hears a mode and its conjugate.
-            rotation[1:, 0] *= 2.0
-            matrices[index] = rotation @ (heat[:, None] * rotation)
-        else:
-            moebius_powers(np.cos(angle), half, rotation)
-            matrices[index] = (rotation @ (heat[:, None] * rotation)).T
+    matrices = np.empty((angles.size, heat.size, heat.size))
+    rotation_matrices(np.cos(angles), heat, balanced, matrices)
     return matrices
 
 

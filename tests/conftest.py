@@ -1,0 +1,62 @@
+"""Threads, floating-point errors and what many tests share."""
+
+import os
+
+# Two threads can be had on every machine, so that tests of thread counts mean the
+# same everywhere; one for BLAS, whose small products are called from these threads.
+# To be set before numba and BLAS are loaded.
+os.environ.setdefault("NUMBA_NUM_THREADS", "2")
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+import numba
+import numpy as np
+import pytest
+
+from fpsolve.grids import PhaseSpaceGrid
+from fpsolve.models import LayDownModel
+from fpsolve.potentials import QuadraticPotential
+
+
+# The grids are small: where a test does not ask for two threads, waiting for the
+# second one would cost more than it does.
+numba.set_num_threads(1)
+
+
+@pytest.fixture(autouse=True)
+def floating_point_errors_raise():
+    """An overflow or an invalid operation in numpy is a failure; underflow is not."""
+    with np.errstate(all="raise", under="ignore"):
+        yield
+
+
+@pytest.fixture
+def rng():
+    """Seeded random numbers."""
+    return np.random.default_rng(20080611)
+
+
+@pytest.fixture
+def uneven_grid():
+    """A grid with a different size along every axis: a swapped index shows."""
+    return PhaseSpaceGrid(half_width=(3.0, 2.5), shape=(6, 7, 8))
+
+
+@pytest.fixture
+def model():
+    """B = |ξ|²/2, A = 1: the example of the paper."""
+    return LayDownModel(QuadraticPotential(), noise=1.0)
+
+
+@pytest.fixture
+def on_threads():
+    """`on_threads(n, f)` calls f with numba limited to n threads."""
+    before = numba.get_num_threads()
+
+    def call(n, f):
+        numba.set_num_threads(n)
+        try:
+            return f()
+        finally:
+            numba.set_num_threads(before)
+
+    return call
