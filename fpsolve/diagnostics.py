@@ -57,8 +57,9 @@ def boundary_mass(p: Array, grid: PhaseSpaceGrid) -> float:
 
 def ring_share(plane: Array) -> float:
     """Share of a sum over the plane that lies in its outermost cells."""
-    total = float(plane.sum())
-    return (total - float(plane[1:-1, 1:-1].sum())) / total
+    sides = plane[0].sum() + plane[-1].sum()
+    ends = plane[1:-1, 0].sum() + plane[1:-1, -1].sum()
+    return float((sides + ends) / plane.sum())
 
 
 def marginal(p: Array, grid: PhaseSpaceGrid, which: str = "xi") -> Array:

@@ -56,6 +56,15 @@ class PhaseSpaceGrid:
         object.__setattr__(self, "half_width", _checked_half_width(self.half_width))
         object.__setattr__(self, "shape", _checked_shape(self.shape))
 
+    def __eq__(self, other: object) -> bool:
+        """Grids are equal when their numbers are, whatever proposed them."""
+        if not isinstance(other, PhaseSpaceGrid):
+            return NotImplemented
+        return (self.half_widths, self.shape) == (other.half_widths, other.shape)
+
+    def __hash__(self) -> int:
+        return hash((self.half_widths, self.shape))
+
     @property
     def half_widths(self) -> tuple[float, float]:
         """Half widths (L1, L2)."""

@@ -187,10 +187,11 @@ class Run:
             error.solution = self._solution("failed", str(error))
             raise
         except KeyboardInterrupt:
-            partial = fallback or self._solution("interrupted", "stopped by the user")
-            partial = replace(
-                partial, status="interrupted", message="stopped by the user"
-            )
+            message = "stopped by the user"
+            partial = self._solution("interrupted", message)
+            if fallback is not None:
+                message += " during the second run: the first one, not extrapolated"
+                partial = replace(fallback, status="interrupted", message=message)
             raise RunInterrupted(partial) from None
         return self._solution("finished", "")
 

@@ -106,7 +106,7 @@ def steady_state(
     ValueError
         If no stationary density exists: a rotating or oscillating nozzle, a potential
         that does not confine, no noise on a moving belt, a linear potential too weak
-        for the belt (MATH 1.6), or a scheme that is not linear.
+        for the belt, or a scheme that is not linear.
     SteadyStateError
         If the residual stays above `tolerance`.
     DomainTooSmallError
@@ -170,7 +170,7 @@ def check_stationary(model: LayDownModel) -> None:
 
 
 def check_linear_strength(model: LayDownModel) -> None:
-    """Raise if |ξ| buckling is too weak to hold the fibre on the belt (MATH 1.6)."""
+    """Raise unless v < I₁(2K/A²)/I₀(2K/A²), which |ξ| buckling needs to hold on."""
     if not isinstance(model.potential, LinearPotential):
         return
     strength = 2.0 * model.potential.slope / model.noise**2

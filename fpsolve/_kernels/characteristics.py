@@ -16,8 +16,13 @@ def following(index, n):
 
 @njit(cache=True, error_model="numpy")
 def wrapped(cell, n):
-    """The whole number `cell` modulo n; in floats, an integer division is slow."""
-    return int(cell - n * np.floor(cell / n))
+    """The whole number `cell` modulo n; in floats, an integer division is slow.
+
+    0 where there is no such number (NaN, or beyond 2⁵³, where the remainder is lost):
+    an index outside the array would read memory that is not ours.
+    """
+    index = int(cell - n * np.floor(cell / n))
+    return index if 0 <= index < n else 0
 
 
 @njit(cache=True, error_model="numpy")

@@ -20,7 +20,7 @@ Array = NDArray[np.float64]
 class RotationDiffusion:
     """R½ D R½ with R: ∂ₛp = ∂_α(∇B·τ⊥ p) and D: ∂ₛp = (A²/2) ∂_αα p, at fixed ξ.
 
-    Both parts are exact flows of trigonometric polynomials in α (MATH 1.4: with
+    Both parts are exact flows of trigonometric polynomials in α (with
     ∇B = |∇B|(cos φ, sin φ) the tangent of (α − φ)/2 grows by e^{|∇B| s}), applied as
     one small matrix per value of |∇B|; their symmetric composition is of order two
     in ds. Keeps the mass of every row to rounding (`balanced=False`) or constants

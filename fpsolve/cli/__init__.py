@@ -1,0 +1,58 @@
+"""The command line: `fpsolve run`, `fpsolve plot` and `fpsolve info`.
+
+Whatever takes long to import is imported by the command that needs it, so that
+``fpsolve --help`` answers at once.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from fpsolve.cli.info import info
+from fpsolve.cli.plot import plot
+from fpsolve.cli.run import run
+
+__all__ = ["app", "main"]
+
+app = typer.Typer(
+    name="fpsolve",
+    help="Solve the Fokker-Planck equation of stochastic fibre lay-down.",
+    epilog="Example: fpsolve run --out results",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    rich_markup_mode=None,
+)
+app.command(epilog="Example: fpsolve run --example spunbond --out results")(run)
+app.command(epilog="Example: fpsolve plot results/laydown.nc --movie")(plot)
+app.command(epilog="Example: fpsolve info")(info)
+
+
+def _show_version(wanted: bool) -> None:
+    if wanted:
+        from fpsolve.provenance import versions
+
+        typer.echo(versions()["fpsolve"])
+        raise typer.Exit
+
+
+@app.callback()
+def _options(
+    version: Annotated[
+        bool,
+        typer.Option(
+            "--version",
+            callback=_show_version,
+            is_eager=True,
+            help="Print the version and exit.",
+        ),
+    ] = False,
+) -> None:
+    """Take the options that come before a command."""
+
+
+def main() -> None:
+    """Run the command line; the exit code is 2 for bad input, 1 for a failed run."""
+    app(prog_name="fpsolve")

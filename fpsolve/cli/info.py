@@ -1,0 +1,68 @@
+"""`fpsolve info`: versions, threads and the compile cache."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from fpsolve.cli.errors import reported_errors
+
+__all__ = ["info"]
+
+
+def info() -> None:
+    """Print versions, threads and compile cache."""
+    with reported_errors():
+        from rich.console import Console
+        from rich.table import Table
+
+        from fpsolve.provenance import versions
+
+        table = Table.grid(padding=(0, 2))
+        rows = {**versions(), "threads": _threads(), "compile cache": _cache()}
+        for name, text in rows.items():
+            table.add_row(name, text)
+        # Paths are for copying, so they are not wrapped.
+        Console(highlight=False, markup=False, soft_wrap=True).print(table)
+
+
+def _threads() -> str:
+    import numba
+
+    settings: Any = numba.config
+    return (
+        f"{numba.get_num_threads()} of {settings.NUMBA_NUM_THREADS}, threading layer "
+        f"{settings.THREADING_LAYER}"
+    )
+
+
+def _cache() -> str:
+    folders = sorted(_cache_folders())
+    files = [
+        file
+        for folder in folders
+        for pattern in ("*.nbi", "*.nbc")
+        for file in folder.glob(pattern)
+    ]
+    size = sum(file.stat().st_size for file in files)
+    places = ", ".join(map(str, folders)) or "none"
+    return f"{places} ({len(files)} files, {size / 2**20:.1f} MiB)"
+
+
+def _cache_folders() -> set[Path]:
+    return {Path(kernel.stats.cache_path) for kernel in _kernels()}
+
+
+def _kernels() -> Iterator[Any]:
+    """Yield every compiled function of the package."""
+    import importlib
+    import pkgutil
+
+    from numba.core.dispatcher import Dispatcher
+
+    package = importlib.import_module("fpsolve._kernels")
+    for module in pkgutil.iter_modules(package.__path__, f"{package.__name__}."):
+        for value in vars(importlib.import_module(module.name)).values():
+            if isinstance(value, Dispatcher):
+                yield value

@@ -1,0 +1,139 @@
+"""What pydantic found wrong, in the words of the configuration file."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from pydantic import ValidationError
+
+from fpsolve.config.names import suggestion
+from fpsolve.config.run import RunConfig
+from fpsolve.config.sections import Section, kinds_of
+
+__all__ = ["complaints"]
+
+_SECTIONS = {
+    name: kinds_of(field.annotation) for name, field in RunConfig.model_fields.items()
+}
+# What TOML calls the types that pydantic speaks of.
+_TYPES = {
+    "a valid number": "a number",
+    "a valid integer": "an integer",
+    "a valid string": "a string",
+    "a valid boolean": "true or false",
+    "a valid tuple": "a list",
+}
+
+
+def complaints(error: ValidationError) -> list[str]:
+    """Return a sentence for every key that is wrong, the section named first.
+
+    A value that fits none of several types gives one sentence with all of them.
+    """
+    found: dict[tuple[Any, ...], str] = {}
+    for entry in error.errors():
+        place, sentence = _place(entry["loc"]), _sentence(entry)
+        if place in found and entry["type"] != "extra_forbidden":
+            found[place] = _joined(found[place], sentence)
+        else:
+            found[place] = sentence
+    return list(found.values())
+
+
+def _place(location: tuple[int | str, ...]) -> tuple[Any, ...]:
+    """Return (section, kind, key) of an error, as far as it says."""
+    if not location:
+        return (None, None, None)
+    name, *rest = location
+    kind = rest.pop(0) if rest and rest[0] in _SECTIONS.get(str(name), {}) else None
+    return (name, kind, rest[0] if rest else None)
+
+
+def _sentence(entry: Mapping[str, Any]) -> str:
+    name, kind, key = _place(entry["loc"])
+    what = entry["type"]
+    if what == "value_error":
+        text = str(entry["ctx"]["error"])
+        return text if name is None else f"section [{name}]: {text}"
+    if key is None and what in ("extra_forbidden", "missing"):
+        return _wrong_section(name, what)
+    if what.startswith("union_tag"):
+        return _wrong_kind(name, entry)
+    if what == "extra_forbidden":
+        return _unknown_key(name, kind, key)
+    if what == "missing" and not _entry_number(entry):
+        return f"section [{name}]: `{key}` must be given. {_keys_text(name, kind)}"
+    return _wrong_value(name, key, entry)
+
+
+def _wrong_section(name: str, what: str) -> str:
+    if what == "missing":
+        return f"section [{name}] must be given, got none."
+    near = suggestion(name, _SECTIONS, "[{}]")
+    known = ", ".join(f"[{section}]" for section in _SECTIONS)
+    return f"unknown section [{name}]{near} Sections are {known}."
+
+
+def _wrong_kind(name: str, entry: Mapping[str, Any]) -> str:
+    kinds = [str(kind) for kind in _SECTIONS[name]]
+    known = ", ".join(repr(kind) for kind in kinds)
+    rule = f"section [{name}]: `kind` must be one of {known}"
+    if entry["type"] == "union_tag_not_found":
+        return f"{rule}, got none."
+    given = entry["ctx"]["tag"]
+    return f"{rule}, got {given!r}{suggestion(given, kinds, '{!r}')}"
+
+
+def _unknown_key(name: str, kind: str | None, key: str) -> str:
+    near = suggestion(key, _section_of(name, kind).keys())
+    owner = "" if kind is None else f" of the kind {kind!r}"
+    keys = _keys_text(name, kind)
+    return f"section [{name}]: `{key}` is not a key{owner}{near} {keys}"
+
+
+def _wrong_value(name: str, key: str | None, entry: Mapping[str, Any]) -> str:
+    if key is None:
+        return f"section [{name}] must be a table, got {entry['input']!r}."
+    rule, number = _rule(entry), _entry_number(entry)
+    if entry["type"] == "missing":
+        number = ""
+    return f"section [{name}]: `{key}{number}` {rule}, got {_shown(entry['input'])}."
+
+
+def _rule(entry: Mapping[str, Any]) -> str:
+    if entry["type"] == "missing":
+        return "must be a longer list"
+    if entry["type"] == "too_long":
+        return f"must be a list of {entry['ctx']['max_length']}"
+    rule = str(entry["msg"]).replace("Input should", "must")
+    for theirs, ours in _TYPES.items():
+        rule = rule.replace(theirs, ours)
+    return rule
+
+
+def _entry_number(entry: Mapping[str, Any]) -> str:
+    """Return "[1]" when the second entry of a list is wrong, else nothing."""
+    last = entry["loc"][-1]
+    return f"[{last}]" if isinstance(last, int) else ""
+
+
+def _joined(first: str, second: str) -> str:
+    """Return one sentence for two rules that the same value breaks."""
+    rule = second.partition("` must be ")[2].rpartition(", got ")[0]
+    if not rule or f"be {rule}" in first or f"or {rule}" in first:
+        return first
+    start, got, value = first.rpartition(", got ")
+    return f"{start} or {rule}{got}{value}"
+
+
+def _shown(value: Any) -> str:
+    return str(list(value)) if isinstance(value, tuple) else repr(value)
+
+
+def _keys_text(name: str, kind: str | None) -> str:
+    return f"Keys are {', '.join(_section_of(name, kind).keys())}."
+
+
+def _section_of(name: str, kind: str | None) -> type[Section]:
+    return _SECTIONS[name][kind]

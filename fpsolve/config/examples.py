@@ -1,0 +1,34 @@
+"""The examples that come with the package."""
+
+from __future__ import annotations
+
+from importlib.resources import files
+from pathlib import Path
+
+from fpsolve.config.names import suggestion
+from fpsolve.errors import ConfigurationError
+
+__all__ = ["EXAMPLES", "example_path"]
+
+EXAMPLES = ("laydown", "spunbond")
+
+
+def example_path(name: str) -> Path:
+    """Return the TOML file of a packaged example.
+
+    Parameters
+    ----------
+    name : {"laydown", "spunbond"}
+        B = ‖ξ‖²/2 with A = 1, or a spunbond process in SI units.
+
+    Raises
+    ------
+    ConfigurationError
+        If there is no such example.
+    """
+    if name not in EXAMPLES:
+        raise ConfigurationError(
+            f"`example` must be one of {', '.join(EXAMPLES)}, got {name!r}"
+            f"{suggestion(name, EXAMPLES)}"
+        )
+    return Path(str(files("fpsolve") / "examples" / f"{name}.toml"))

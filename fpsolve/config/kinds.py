@@ -1,0 +1,176 @@
+"""The sections of a configuration file."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, ClassVar, Literal, TypeAlias
+
+from pydantic import model_validator
+
+from fpsolve import initial
+from fpsolve.config.sections import Section, one_of, section
+from fpsolve.curves import (
+    EllipticNozzle,
+    FixedBelt,
+    MovingBelt,
+    OscillatingNozzle,
+    RotatingNozzle,
+    TabulatedCurve,
+)
+from fpsolve.grids import PhaseSpaceGrid
+from fpsolve.models import LayDownModel
+from fpsolve.potentials import (
+    FreePotential,
+    LinearPotential,
+    PowerPotential,
+    QuadraticPotential,
+)
+from fpsolve.process import Process
+from fpsolve.schedule import make_schedule
+from fpsolve.schemes import drift_kick, semi_lagrangian
+
+__all__ = [
+    "CurveSection",
+    "GridSection",
+    "InitialSection",
+    "ModelSection",
+    "OutputSection",
+    "PotentialSection",
+    "ProcessSection",
+    "RunSection",
+    "SchemeSection",
+]
+
+_Numbers = tuple[float, ...]
+_Matrix = tuple[tuple[float, float], tuple[float, float]]
+
+if TYPE_CHECKING:
+    # The sections are made when this module is loaded; checkers know what they share.
+    PotentialSection: TypeAlias = Section
+    CurveSection: TypeAlias = Section
+    InitialSection: TypeAlias = Section
+    SchemeSection: TypeAlias = Section
+    ModelSection: TypeAlias = Section
+    GridSection: TypeAlias = Section
+    ProcessSection: TypeAlias = Section
+else:
+    PotentialSection = one_of(
+        *(
+            section(potential, potential.kind)
+            for potential in (
+                QuadraticPotential,
+                LinearPotential,
+                PowerPotential,
+                FreePotential,
+            )
+        )
+    )
+    CurveSection = one_of(
+        *(
+            section(curve, curve.kind)
+            for curve in (
+                FixedBelt,
+                MovingBelt,
+                RotatingNozzle,
+                OscillatingNozzle,
+                EllipticNozzle,
+            )
+        ),
+        section(
+            TabulatedCurve,
+            TabulatedCurve.kind,
+            {"s": _Numbers, "gamma1": _Numbers, "gamma2": _Numbers},
+        ),
+    )
+    InitialSection = one_of(
+        section(
+            initial.gaussian,
+            "gaussian",
+            {"variance": float | tuple[float, float] | _Matrix},
+        ),
+        section(initial.equilibrium, "equilibrium"),
+    )
+    SchemeSection = one_of(
+        section(drift_kick, "drift_kick"), section(semi_lagrangian, "semi_lagrangian")
+    )
+    ModelSection = section(LayDownModel)
+    GridSection = section(PhaseSpaceGrid)
+    ProcessSection = section(Process)
+
+
+class RunSection(Section):
+    """How far to run and what to keep; see `fpsolve.solve`.
+
+    `tolerance` is the L1 error at which a grid or a step that is not given aims.
+    """
+
+    s_end: float
+    ds: float | None = None
+    save_at: _Numbers | None = None
+    save_every: float | None = None
+    record_every: int = 1
+    extrapolate: bool = False
+    tolerance: float = 1e-2
+    mass_tolerance: float | None = None
+    boundary_tolerance: float | None = None
+
+    @model_validator(mode="after")
+    def _check_schedule(self) -> RunSection:
+        if self.save_at is not None and self.save_every is not None:
+            raise ValueError(
+                "`save_at` and `save_every` must not both be given; remove one of them."
+            )
+        if self.save_every is not None and not 0 < self.save_every < math.inf:
+            raise ValueError(f"`save_every` must be positive, got {self.save_every:g}.")
+        if self.ds is None:
+            make_schedule((0.0, self.s_end), self.s_end, None, self.record_every)
+        else:
+            self.check_schedule(self.ds)
+        return self
+
+    def check_schedule(self, ds: float) -> None:
+        """Raise ValueError unless steps of ds fit the end and the saving points."""
+        make_schedule((0.0, self.s_end), ds, self.saves(), self.record_every)
+
+    def saves(self) -> tuple[float, ...]:
+        """Return the arclengths at which densities are kept."""
+        if self.save_every is None:
+            return (self.s_end,) if self.save_at is None else self.save_at
+        n_saves = math.floor(self.s_end / self.save_every + 1e-9) + 1
+        saves = {k * self.save_every for k in range(n_saves)} | {self.s_end}
+        return tuple(sorted(saves))
+
+    def step(self, suggested: float) -> float:
+        """Return the largest step, suggested or below, that meets all saving points.
+
+        When none down to a tenth does, the span alone is divided.
+        """
+        fewest = math.ceil(self.s_end / suggested - 1e-9)
+        for n_steps in range(fewest, 10 * fewest):
+            places = [s * n_steps / self.s_end for s in self.saves()]
+            if all(abs(place - round(place)) < 1e-6 for place in places):
+                return self.s_end / n_steps
+        return self.s_end / fewest
+
+
+class OutputSection(Section):
+    """Names and kinds of the files written."""
+
+    name: str = "result"
+    format: Literal["netcdf", "zarr"] = "netcdf"
+    figures: bool = True
+
+    suffixes: ClassVar[dict[str, str]] = {"netcdf": ".nc", "zarr": ".zarr"}
+
+    @model_validator(mode="after")
+    def _check_name(self) -> OutputSection:
+        if not self.name or set(self.name) & set("/\\\0") or self.name[0] == ".":
+            raise ValueError(
+                f"`name` must be the name of a file without folders, got {self.name!r}."
+            )
+        return self
+
+    @property
+    def file_name(self) -> str:
+        """Name of the result file."""
+        return self.name + self.suffixes[self.format]

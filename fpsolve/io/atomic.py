@@ -1,0 +1,75 @@
+"""Files and folders that appear complete or not at all."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+__all__ = ["atomic_path"]
+
+
+@contextmanager
+def atomic_path(path: str | os.PathLike[str]) -> Iterator[Path]:
+    """Yield a path to write to; at the end what lies there takes the place of `path`.
+
+    After an exception, Ctrl-C included, `path` is as it was and nothing else is left
+    behind. The draft has the same name and suffix and lies on the same file system,
+    so that the last move is one renaming.
+
+    Parameters
+    ----------
+    path : str or os.PathLike
+        Final place of the file or folder; its parent must exist.
+
+    Raises
+    ------
+    FileNotFoundError
+        If the parent folder does not exist.
+    IsADirectoryError
+        If a file is to take the place of a folder.
+    """
+    target = Path(path)
+    if not target.parent.is_dir():
+        raise FileNotFoundError(
+            f"`path` must lie in an existing folder, got `{target}`; create "
+            f"`{target.parent}` first."
+        )
+    if target.is_dir() and not is_store(target):
+        raise IsADirectoryError(
+            f"`path` must not be a folder, got `{target}`; name a file in it."
+        )
+    # A folder instead of a temporary file: the file in it gets the permissions that
+    # the user's umask asks for.
+    staging = Path(tempfile.mkdtemp(prefix=f".{target.name}.", dir=target.parent))
+    try:
+        draft = staging / target.name
+        yield draft
+        _move(draft, target, aside=staging / "replaced")
+    finally:
+        shutil.rmtree(staging, ignore_errors=True)
+
+
+def is_store(path: Path) -> bool:
+    """Whether a folder is a zarr store, the only kind that may be replaced."""
+    return any((path / name).is_file() for name in ("zarr.json", ".zgroup"))
+
+
+def _move(draft: Path, target: Path, aside: Path) -> None:
+    if not target.is_dir():
+        draft.replace(target)
+        return
+    if not draft.is_dir():
+        raise IsADirectoryError(
+            f"`path` must not be a folder, got `{target}`; name a file in it."
+        )
+    # No system call replaces a folder that is not empty.
+    target.rename(aside)
+    try:
+        draft.rename(target)
+    except BaseException:
+        aside.rename(target)
+        raise

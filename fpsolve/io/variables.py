@@ -1,0 +1,47 @@
+"""What the variables of a result are: long names in the symbols of the paper."""
+
+from __future__ import annotations
+
+__all__ = ["COORDINATES", "DENSITY", "SERIES", "long_name"]
+
+DENSITY = "probability density p(s, ξ₁, ξ₂, α)"
+
+COORDINATES = {
+    "s": "arclength s of the saved densities",
+    "s_step": "arclength s of the recorded steps",
+    "xi1": "deviation ξ₁ along the belt",
+    "xi2": "deviation ξ₂ across the belt",
+    "alpha": "angle α in radians",
+}
+
+SERIES = {
+    "mass": "mass ∫ p dξ dα",
+    "relative_entropy": "relative entropy H(p|p_S)",
+    "entropy_dissipation": "entropy dissipation (A²/2) ∫ p (∂_α ln(p/p_S))² dξ dα",
+    "minimum": "smallest value of p",
+    "boundary_mass": "mass in the cells at the boundary of the box",
+    "mass_correction": "relative mass error removed",
+    "mean_xi1": "mean E ξ₁",
+    "mean_xi2": "mean E ξ₂",
+    "variance_xi1": "variance Var ξ₁",
+    "variance_xi2": "variance Var ξ₂",
+    "covariance": "covariance Cov(ξ₁, ξ₂)",
+    "mean_cos_alpha": "mean E cos α",
+    "mean_sin_alpha": "mean E sin α",
+    "theta": "weight θ of the adjusted advection",
+}
+
+_ERRORS = {"density_l1": "L¹ norm of p"}
+
+
+def long_name(variable: str) -> str:
+    """Return the long name of a series or of an error estimate.
+
+    Parameters
+    ----------
+    variable : str
+        Name in the dataset, for instance "mass" or "mass_error".
+    """
+    quantity = variable.removesuffix("_error")
+    name = _ERRORS.get(quantity) or SERIES.get(quantity, quantity)
+    return name if quantity == variable else f"estimated error of: {name}"

@@ -1,0 +1,120 @@
+"""The saved densities as a movie."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from fpsolve.io.atomic import atomic_path
+from fpsolve.plotting.entropy import draw_entropy, has_entropy
+from fpsolve.plotting.maps import (
+    add_colour_bar,
+    colour_scale,
+    draw_map,
+    show_region,
+    visible_region,
+)
+from fpsolve.plotting.moments import draw_moments
+from fpsolve.plotting.style import (
+    COLOURS,
+    PAGE,
+    new_figure,
+    paper_style,
+    parameters,
+)
+from fpsolve.solution import Solution
+
+if TYPE_CHECKING:
+    from matplotlib.animation import AbstractMovieWriter
+
+__all__ = ["movie"]
+
+_SUFFIXES = (".gif", ".mp4")
+_RESOLUTION = 120
+
+
+def movie(
+    solution: Solution, path: str | os.PathLike[str], *, fps: float = 8.0
+) -> Path:
+    """Write a movie of ∫ p dα beside the decay of H(p|p_S), a frame per saved density.
+
+    Parameters
+    ----------
+    solution : Solution
+        With at least two saved densities.
+    path : str or os.PathLike
+        Ends in ".gif" or ".mp4"; the latter needs the program ffmpeg.
+    fps : float
+        Frames per second.
+
+    Returns
+    -------
+    Path
+        The path written; the file appears complete or not at all.
+
+    Raises
+    ------
+    ValueError
+        If fewer than two densities were saved, the suffix is unknown, ffmpeg is
+        missing, or `fps` is not positive.
+    """
+    path = Path(path)
+    writer = _writer(path, fps)
+    if len(solution.saved_s) < 2:
+        raise ValueError(
+            "`solution` must hold at least two saved densities for a movie, got "
+            f"{len(solution.saved_s)}; name more arclengths in `save_at` of the run."
+        )
+    with paper_style(), atomic_path(path) as draft:
+        figure, show = _stage(solution)
+        with writer.saving(figure, str(draft), _RESOLUTION):
+            for s in solution.saved_s:
+                show(float(s))
+                writer.grab_frame()
+    return path
+
+
+def _writer(path: Path, fps: float) -> AbstractMovieWriter:
+    from matplotlib.animation import FFMpegWriter, PillowWriter
+
+    if not (np.isfinite(fps) and fps > 0):
+        raise ValueError(f"`fps` must be positive, got {fps:g}.")
+    if path.suffix not in _SUFFIXES:
+        known = " or ".join(_SUFFIXES)
+        raise ValueError(f"`path` of a movie must end in {known}, got `{path.name}`.")
+    if path.suffix == ".gif":
+        return PillowWriter(fps=fps)  # type: ignore[arg-type]
+    if not FFMpegWriter.isAvailable():
+        raise ValueError(
+            f"`path` must end in .gif where ffmpeg is not installed, got `{path.name}`."
+        )
+    return FFMpegWriter(fps=fps)  # type: ignore[arg-type]
+
+
+def _stage(solution: Solution) -> tuple[Any, Any]:
+    """Return the figure of the first frame and the function that shows another."""
+    figure = new_figure(PAGE, 3.0)
+    left, right = figure.subplots(1, 2)
+    maps = {float(s): solution.marginal("xi", s) for s in solution.saved_s}
+    first = float(solution.saved_s[0])
+    image = draw_map(left, solution, maps[first], colour_scale(list(maps.values())))
+    show_region(left, visible_region(solution, list(maps.values())))
+    add_colour_bar(figure, image, [left])
+    left.set_xlabel(r"$\xi_1$")
+    left.set_ylabel(r"$\xi_2$")
+    if has_entropy(solution):
+        draw_entropy(right, solution)
+    else:
+        draw_moments(right, solution, "spread")
+    cursor = right.axvline(first, color=COLOURS["vermilion"], linewidth=1.0)
+    figure.suptitle(parameters(solution))
+
+    def show(s: float) -> None:
+        image.set_data(maps[s].T)
+        left.set_title(f"$s = {s:.4g}$")
+        cursor.set_xdata([s, s])
+
+    return figure, show
