@@ -12,7 +12,7 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from fpsolve import diagnostics, initial, plotting
+    from fpsolve import diagnostics, errors, initial, plotting
     from fpsolve.curves import (
         EllipticNozzle,
         FixedBelt,
@@ -30,6 +30,7 @@ if TYPE_CHECKING:
         MassCorrectionError,
         MassDriftError,
         MemoryLimitError,
+        NegativeDensityError,
         NonFiniteDensityError,
         RunInterrupted,
         SteadyStateError,
@@ -60,7 +61,7 @@ _MODULES = {
     "fpsolve.errors": (
         "ConfigurationError DomainTooSmallError FileFormatError FpsolveError "
         "GridMismatchError MassCorrectionError MassDriftError MemoryLimitError "
-        "NonFiniteDensityError RunInterrupted SteadyStateError"
+        "NegativeDensityError NonFiniteDensityError RunInterrupted SteadyStateError"
     ),
     "fpsolve.grids": "PhaseSpaceGrid",
     "fpsolve.io": "load",
@@ -76,7 +77,7 @@ _MODULES = {
     "fpsolve.steady_state": "SteadyState steady_state",
     "fpsolve.suggestions": "suggest_grid suggest_step",
 }
-_SUBMODULES = ("diagnostics", "initial", "plotting")
+_SUBMODULES = ("diagnostics", "errors", "initial", "plotting")
 _HOME = {name: home for home, names in _MODULES.items() for name in names.split()}
 
 __all__ = [
@@ -96,6 +97,7 @@ __all__ = [
     "MassDriftError",
     "MemoryLimitError",
     "MovingBelt",
+    "NegativeDensityError",
     "NonFiniteDensityError",
     "OscillatingNozzle",
     "PhaseSpaceGrid",
@@ -110,6 +112,7 @@ __all__ = [
     "TabulatedCurve",
     "diagnostics",
     "drift_kick",
+    "errors",
     "initial",
     "load",
     "plotting",

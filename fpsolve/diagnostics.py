@@ -19,6 +19,7 @@ __all__ = [
     "marginal",
     "mass",
     "moments",
+    "negative_mass",
     "relative_entropy",
 ]
 
@@ -62,6 +63,11 @@ def ring_share(plane: Array) -> float:
     return float((sides + ends) / plane.sum())
 
 
+def negative_mass(p: Array, grid: PhaseSpaceGrid) -> float:
+    """∫ max(−p, 0) dξ dα: how much of a density is unphysical undershoot."""
+    return float(np.maximum(-np.asarray(p), 0.0).sum()) * grid.cell_volume
+
+
 def marginal(p: Array, grid: PhaseSpaceGrid, which: str = "xi") -> Array:
     """∫ p over the other variables: "xi" (n1, n2), "alpha", "xi1" or "xi2" (1-D)."""
     d1, d2, d_alpha = grid.spacing
@@ -85,7 +91,7 @@ def moments(p: Array, grid: PhaseSpaceGrid) -> dict[str, float]:
 
 
 def functionals(p: Array, grid: PhaseSpaceGrid) -> Array:
-    """Sums over α for every ξ; shape (n1, n2, 5), see the kernel."""
+    """Sums over α for every ξ; shape (n1, n2, 6), see the kernel."""
     out = np.empty((*grid.shape[:2], N_FUNCTIONALS))
     row_functionals(p, np.cos(grid.alpha), np.sin(grid.alpha), out)
     return out

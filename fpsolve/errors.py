@@ -21,6 +21,7 @@ __all__ = [
     "MassCorrectionError",
     "MassDriftError",
     "MemoryLimitError",
+    "NegativeDensityError",
     "NonFiniteDensityError",
     "RunError",
     "RunInterrupted",
@@ -70,6 +71,33 @@ class MassDriftError(RunError):
         )
         self.s = s
         self.drift = drift
+        self.tolerance = tolerance
+
+
+class NegativeDensityError(RunError):
+    """A substantial part of the density has become negative.
+
+    Undershoot beside a steep front is harmless; this much is a density that is not
+    resolved, or a scheme that is unstable.
+
+    Parameters
+    ----------
+    s : float
+        Arclength at which it was noticed.
+    negative_mass : float
+        ∫ max(-p, 0) relative to the mass.
+    tolerance : float
+        Largest share allowed.
+    """
+
+    def __init__(self, s: float, negative_mass: float, tolerance: float) -> None:
+        super().__init__(
+            f"negative mass {negative_mass:.2g} exceeds tolerance {tolerance:g} at "
+            f"s = {s:g}; refine the grid, use `positive=True` or the form `h`, or "
+            "raise `negative_tolerance` if this undershoot is acceptable."
+        )
+        self.s = s
+        self.negative_mass = negative_mass
         self.tolerance = tolerance
 
 

@@ -13,7 +13,14 @@ __all__ = ["extrapolated"]
 
 # These are not approximations of anything that depends on ds: the coordinate, and
 # what describes the finer run itself.
-NOT_EXTRAPOLATED = ("s", "minimum", "boundary_mass", "mass_correction", "theta")
+NOT_EXTRAPOLATED = (
+    "s",
+    "minimum",
+    "negative_mass",
+    "boundary_mass",
+    "mass_correction",
+    "theta",
+)
 
 
 def extrapolated(coarse: Solution, fine: Solution, order: int) -> Solution:

@@ -19,13 +19,14 @@ BASIC = (
     "relative_entropy",
     "entropy_dissipation",
     "minimum",
+    "negative_mass",
     "boundary_mass",
     "mass_correction",
 )
 
 
 class Recorder:
-    """Series of mass, H(p|r), its dissipation, minimum, boundary mass, moments.
+    """Series of mass, H(p|r), its dissipation, minimum, negative and boundary mass.
 
     Parameters
     ----------
@@ -54,6 +55,7 @@ class Recorder:
             "mass": float(sums[:, :, 0].sum()) * self.grid.cell_volume,
             **self._entropy(p, sums),
             "minimum": float(sums[:, :, 4].min()),
+            "negative_mass": float(sums[:, :, 5].sum()) * self.grid.cell_volume,
             "boundary_mass": diagnostics.ring_share(np.abs(sums[:, :, 0])),
             **extra,
             **diagnostics.moments_of_rows(sums, self.grid),

@@ -28,9 +28,10 @@ class Solution:
     """The densities p(ξ, α, s) that were saved, and series over every recorded step.
 
     Every series is an attribute: `solution.s`, `mass`, `relative_entropy`,
-    `entropy_dissipation`, `minimum`, `boundary_mass`, `mass_correction`, the moments
-    `mean_xi1`, `mean_xi2`, `variance_xi1`, `variance_xi2`, `covariance`,
-    `mean_cos_alpha`, `mean_sin_alpha`, and `theta` for the semi-Lagrangian scheme.
+    `entropy_dissipation`, `minimum`, `negative_mass`, `boundary_mass`,
+    `mass_correction`, the moments `mean_xi1`, `mean_xi2`, `variance_xi1`,
+    `variance_xi2`, `covariance`, `mean_cos_alpha`, `mean_sin_alpha`, and `theta` for
+    the semi-Lagrangian scheme.
     All of shape (n_recorded,) and dimensionless.
 
     Attributes

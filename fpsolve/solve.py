@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
 import numpy as np
@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from fpsolve.errors import (
     DomainTooSmallError,
     MassDriftError,
+    NegativeDensityError,
     NonFiniteDensityError,
     RunError,
     RunInterrupted,
@@ -62,6 +63,7 @@ def solve(
     progress: bool | ProgressCallback = False,
     mass_tolerance: float = 1e-10,
     boundary_tolerance: float = 1e-3,
+    negative_tolerance: float = 0.2,
     reference: Array | None = None,
     record_every: int = 1,
     memory_limit: int | None = None,
@@ -92,6 +94,9 @@ def solve(
         Largest relative drift of the mass.
     boundary_tolerance : float
         Largest share of mass in the outermost cells.
+    negative_tolerance : float
+        Largest ∫ max(−p, 0), relative to the mass. Undershoot of a few percent is
+        what high-order interpolation leaves beside fronts.
     reference : ndarray, optional
         Density the entropy is relative to; p_S by default.
     record_every : int
@@ -108,19 +113,17 @@ def solve(
     ------
     ValueError, GridMismatchError, MemoryLimitError
         Before the run: bad arguments, p0 on another grid, too large a run.
-    NonFiniteDensityError, MassDriftError, DomainTooSmallError, MassCorrectionError
-        During the run, each with its numbers and the partial solution.
+    NonFiniteDensityError, MassDriftError, NegativeDensityError, DomainTooSmallError
+        During the run, each with its numbers and the partial solution; so is
+        `MassCorrectionError` of the semi-Lagrangian scheme.
     """
     p0 = checked_start(scheme, p0)
-    for name, value in (("mass", mass_tolerance), ("boundary", boundary_tolerance)):
-        if not value > 0:
-            raise ValueError(f"`{name}_tolerance` must be positive, got {value:g}.")
+    tolerances = Tolerances(mass_tolerance, boundary_tolerance, negative_tolerance)
     schedule = make_schedule(s_span, ds, save_at, record_every)
     required = required_memory(
         scheme.grid.nbytes, scheme.n_arrays, len(schedule.saves), extrapolate
     )
     check_memory(required, memory_limit)
-    tolerances = (mass_tolerance, boundary_tolerance)
     with reporting(progress) as report, announced_compilation(bool(progress)):
         n_total = schedule.n_steps * (3 if extrapolate else 1)
         coarse = Run(scheme, p0, schedule, reference, tolerances)
@@ -132,6 +135,20 @@ def solve(
             )
             solution = extrapolated(solution, refined, scheme.order)
     return solution
+
+
+@dataclass(frozen=True)
+class Tolerances:
+    """What a run puts up with before it stops."""
+
+    mass: float
+    boundary: float
+    negative: float
+
+    def __post_init__(self) -> None:
+        for name, value in vars(self).items():
+            if not value > 0:
+                raise ValueError(f"`{name}_tolerance` must be positive, got {value:g}.")
 
 
 def checked_start(scheme: Scheme, p0: Array) -> Array:
@@ -154,11 +171,11 @@ class Run:
         p0: Array,
         schedule: Schedule,
         reference: Array | None,
-        tolerances: tuple[float, float],
+        tolerances: Tolerances,
     ) -> None:
         self.scheme, self.schedule = scheme, schedule
         self.recorder = Recorder(scheme.model, scheme.grid, reference)
-        self.mass_tolerance, self.boundary_tolerance = tolerances
+        self.tolerances = tolerances
         self.state = scheme.start(p0)
         self.saved: list[tuple[float, Array]] = []
         self.watch = Stopwatch()
@@ -217,16 +234,20 @@ class Run:
     def _check(self, values: dict[str, float]) -> None:
         s = values["s"]
         drift = values["mass"] / self.recorder.rows[0]["mass"] - 1.0
-        if not abs(drift) <= self.mass_tolerance:
-            raise MassDriftError(s, drift, self.mass_tolerance)
+        allowed = self.tolerances
+        if not abs(drift) <= allowed.mass:
+            raise MassDriftError(s, drift, allowed.mass)
         if not abs(self.state.correction) <= self.scheme.correction_limit:
             raise MassDriftError(s, self.state.correction, self.scheme.correction_limit)
-        if not values["boundary_mass"] <= self.boundary_tolerance:
+        negative = values["negative_mass"] / values["mass"]
+        if not negative <= allowed.negative:
+            raise NegativeDensityError(s, negative, allowed.negative)
+        if not values["boundary_mass"] <= allowed.boundary:
             raise DomainTooSmallError(
                 values["boundary_mass"],
                 self.scheme.grid.half_width,
                 s,
-                self.boundary_tolerance,
+                allowed.boundary,
             )
 
     def _solution(self, status: str, message: str) -> Solution:

@@ -9,7 +9,7 @@ from numba import njit, prange
 # Staggered first difference of order eight: the weights of q[k+1+j] − q[k−j].
 NEAR, NEXT, THIRD, FAR = 1225.0 / 1024.0, -245.0 / 3072.0, 49.0 / 5120.0, -5.0 / 7168.0
 
-N_FUNCTIONALS = 5
+N_FUNCTIONALS = 6
 
 
 @njit(cache=True, fastmath={"contract"}, error_model="numpy")
@@ -32,9 +32,9 @@ def squared_differences(padded, n_alpha):
 
 @njit(cache=True, parallel=True, fastmath={"contract"}, error_model="numpy")
 def row_functionals(p, cosine, sine, out):
-    """out[i, j] = Σ_k of p, p cos α, p sin α, (δ√p)², and min_k p.
+    """out[i, j] = Σ_k of p, p cos α, p sin α, (δ√p)², min_k p, and Σ_k max(−p, 0).
 
-    p (n1, n2, n_alpha); cosine, sine (n_alpha,); out (n1, n2, 5). Negative values
+    p (n1, n2, n_alpha); cosine, sine (n_alpha,); out (n1, n2, 6). Negative values
     count as zero under the root.
     """
     n1, n2, n_alpha = p.shape
@@ -45,12 +45,14 @@ def row_functionals(p, cosine, sine, out):
             total_cosine = 0.0
             total_sine = 0.0
             lowest = p[i, j, 0]
+            negative = 0.0
             for k in range(n_alpha):
                 value = p[i, j, k]
                 total += value
                 total_cosine += value * cosine[k]
                 total_sine += value * sine[k]
                 lowest = min(lowest, value)
+                negative += max(-value, 0.0)
                 padded[k + 3] = np.sqrt(max(value, 0.0))
             for k in range(3):
                 padded[k] = padded[k + n_alpha]
@@ -61,6 +63,7 @@ def row_functionals(p, cosine, sine, out):
             out[i, j, 2] = total_sine
             out[i, j, 3] = squared_differences(padded, n_alpha)
             out[i, j, 4] = lowest
+            out[i, j, 5] = negative
 
 
 @njit(cache=True, parallel=True, fastmath={"contract"}, error_model="numpy")

@@ -113,6 +113,7 @@ class RunSection(Section):
     tolerance: float = 1e-2
     mass_tolerance: float | None = None
     boundary_tolerance: float | None = None
+    negative_tolerance: float | None = None
 
     @model_validator(mode="after")
     def _check_schedule(self) -> RunSection:

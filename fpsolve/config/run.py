@@ -154,7 +154,7 @@ class RunConfig(Section):
             "record_every": run.record_every,
             "extrapolate": run.extrapolate,
         }
-        for name in ("mass_tolerance", "boundary_tolerance"):
+        for name in ("mass_tolerance", "boundary_tolerance", "negative_tolerance"):
             value = getattr(run, name)
             if value is not None:
                 arguments[name] = value

@@ -19,6 +19,7 @@ SERIES = {
     "relative_entropy": "relative entropy H(p|p_S)",
     "entropy_dissipation": "entropy dissipation (A²/2) ∫ p (∂_α ln(p/p_S))² dξ dα",
     "minimum": "smallest value of p",
+    "negative_mass": "mass of the negative part of the density",
     "boundary_mass": "mass in the cells at the boundary of the box",
     "mass_correction": "relative mass error removed",
     "mean_xi1": "mean E ξ₁",
