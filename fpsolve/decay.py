@@ -41,6 +41,14 @@ class DecayRate:
     amplitude: float
     window: tuple[float, float]
 
+    def __str__(self) -> str:
+        """Return "0.312 ± 0.004" or "0.31 ± 0.12": no more digits than are known."""
+        error = self.standard_error
+        digits = 3
+        if math.isfinite(error) and error > 0:
+            digits = min(max(math.ceil(-math.log10(error / 2)), 0), 6)
+        return f"{self.rate:.{digits}f} ± {error:.{digits}f}"
+
 
 def fit_decay(
     s: Array, values: Array, window: tuple[float, float] | None = None

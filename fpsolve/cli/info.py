@@ -15,16 +15,15 @@ def info() -> None:
     """Print versions, threads and compile cache."""
     with reported_errors():
         from rich.console import Console
-        from rich.table import Table
 
         from fpsolve.provenance import versions
 
-        table = Table.grid(padding=(0, 2))
         rows = {**versions(), "threads": _threads(), "compile cache": _cache()}
+        width = max(map(len, rows))
+        console = Console(highlight=False, markup=False, soft_wrap=True)
         for name, text in rows.items():
-            table.add_row(name, text)
-        # Paths are for copying, so they are not wrapped.
-        Console(highlight=False, markup=False, soft_wrap=True).print(table)
+            # No table: paths are for copying, so they are neither wrapped nor cut.
+            console.print(f"{name:{width}}  {text}")
 
 
 def _threads() -> str:

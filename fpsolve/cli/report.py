@@ -84,8 +84,8 @@ def _rate(solution: Solution) -> str | None:
         return None
     start, end = fit.window
     return (
-        f"H - H_box falls like exp(-λs), λ = {fit.rate:.4g} ± "
-        f"{fit.standard_error:.1g}, fitted for s from {start:g} to {end:g}"
+        f"H - H_box falls like exp(-λs), λ = {fit}, "
+        f"fitted for s from {start:g} to {end:g}"
     )
 
 

@@ -129,23 +129,15 @@ def _draw_fit(axes: Axes, fit: DecayRate | None) -> None:
     if fit is None:
         return
     window = np.linspace(*fit.window, 50)
+    rate = str(fit).replace("±", r"\pm")
     axes.plot(
         window,
         fit.amplitude * np.exp(-fit.rate * window),
         color=COLOURS["black"],
         linestyle=":",
         linewidth=1.6,
-        label=rf"$\lambda = {_with_error(fit)}$",
+        label=rf"$\lambda = {rate}$",
     )
-
-
-def _with_error(fit: DecayRate) -> str:
-    """Return "0.312 ± 0.004" or "0.31 ± 0.12": one digit of the error, two of a 1."""
-    error = fit.standard_error
-    digits = 3
-    if np.isfinite(error) and error > 0:
-        digits = int(np.clip(np.ceil(-np.log10(error / 2)), 0, 6))
-    return rf"{fit.rate:.{digits}f} \pm {error:.{digits}f}"
 
 
 def _power_of_ten(number: float) -> str:
