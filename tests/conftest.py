@@ -16,7 +16,6 @@ from fpsolve.grids import PhaseSpaceGrid
 from fpsolve.models import LayDownModel
 from fpsolve.potentials import QuadraticPotential
 
-
 # The grids are small: where a test does not ask for two threads, waiting for the
 # second one would cost more than it does.
 numba.set_num_threads(1)

@@ -23,7 +23,7 @@ class Convergence:
 
 
 def measure_order(error_of, first, n_halvings=2):
-    """Errors error_of(n) for n = first, 2·first, …: steps of a run, cells of an axis."""
+    """Errors error_of(n) for n = first, 2·first, …: steps of a run, or cells."""
     resolutions = tuple(first * 2**halving for halving in range(n_halvings + 1))
     return Convergence(resolutions, np.array([error_of(n) for n in resolutions]))
 

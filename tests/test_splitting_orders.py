@@ -35,7 +35,7 @@ CIRCULATIONS = {
         STIFFENING, 2.0, PhaseSpaceGrid(3.4, (40, 40, 24))
     ),
 }
-# Errors at ds = 1/16 were 3.0e-4 to 1.3e-3 plain and 6.6e-6 to 1.4e-4 balanced.
+# Errors at ds = 1/16 were 3.6e-4 to 1.2e-3 plain and 2.7e-5 to 1.8e-4 balanced.
 VARIANTS = {
     "plain": ({}, 3e-3),
     "positive": ({"positive": True}, 3e-3),
@@ -89,7 +89,7 @@ def test_drift_kick_is_of_its_declared_order_for_every_curve(curve, variant):
 
 
 # (splitting, diffusion): declared order, ceiling at ds = 1/8 (3.3e-4 to 7e-4 measured
-# for the second order, 5.9e-3 to 1.2e-2 for the first).
+# for the second order, 2.6e-3 to 1.0e-2 for the first).
 PAIRINGS = {
     ("strang", "crank_nicolson"): (2, 1.5e-3),
     ("strang", "backward_euler"): (1, 2.5e-2),

@@ -1,0 +1,121 @@
+"""The names a user sees, and what importing them costs."""
+
+import importlib
+import subprocess
+import sys
+from types import FunctionType, ModuleType
+
+import pytest
+
+import fpsolve as fp
+
+HEAVY = ("numba", "scipy", "matplotlib", "xarray", "pandas", "typer", "pydantic", "pde")
+
+
+@pytest.mark.parametrize("name", fp.__all__)
+def test_every_public_name_exists_and_is_documented(name):
+    value = getattr(fp, name)
+    assert value.__doc__
+    assert name in dir(fp)
+
+
+def test_names_are_listed_in_order_and_once():
+    assert fp.__all__ == sorted(set(fp.__all__))
+
+
+def test_importing_the_module_does_not_hide_the_function_of_that_name():
+    # Both packages have a function and a module of the same name.
+    for name in ("solve", "steady_state"):
+        module = importlib.import_module(f"fpsolve.{name}")
+        assert isinstance(module, ModuleType)
+        assert isinstance(getattr(fp, name), FunctionType)
+        assert getattr(fp, name) is getattr(module, name)
+
+
+def test_the_module_still_comes_first_in_a_fresh_interpreter():
+    code = (
+        "import fpsolve.solve, fpsolve.steady_state, fpsolve as fp;"
+        "assert callable(fp.solve) and callable(fp.steady_state);"
+        "from fpsolve.solve import Run; from fpsolve import solve;"
+        "assert solve is fp.solve"
+    )
+    run(code)
+
+
+def test_submodules_are_reached_as_attributes():
+    for name in ("diagnostics", "initial", "plotting"):
+        assert isinstance(getattr(fp, name), ModuleType)
+
+
+def test_unknown_names_are_attribute_errors():
+    with pytest.raises(AttributeError, match="has no attribute 'sovle'"):
+        fp.sovle  # noqa: B018
+
+
+def test_the_version_is_that_of_the_distribution_when_installed():
+    from importlib.metadata import PackageNotFoundError, version
+
+    try:
+        expected = version("fpsolve")
+    except PackageNotFoundError:
+        # Run from a checkout that is not installed.
+        with pytest.raises(PackageNotFoundError):
+            fp.__version__  # noqa: B018
+        return
+    assert fp.__version__ == expected
+
+
+def test_import_loads_nothing_heavy():
+    loaded = run(
+        f"import fpsolve, sys; print([m for m in {HEAVY!r} if m in sys.modules])"
+    )
+    assert loaded.strip() == "[]"
+
+
+@pytest.mark.parametrize(
+    ("statement", "unwanted"),
+    [
+        # The continuous model needs no compiler, and nothing needs pictures.
+        ("fp.LayDownModel(fp.QuadraticPotential(), 1.0)", ("numba", "matplotlib")),
+        (
+            "fp.solve, fp.drift_kick, fp.PhaseSpaceGrid",
+            ("matplotlib", "xarray", "typer"),
+        ),
+        ("fp.load", ("matplotlib", "typer")),
+    ],
+)
+def test_names_load_only_what_they_need(statement, unwanted):
+    loaded = run(
+        f"import fpsolve as fp, sys; {statement};"
+        f"print([m for m in {unwanted!r} if m in sys.modules])"
+    )
+    assert loaded.strip() == "[]"
+
+
+def test_import_takes_less_than_a_second():
+    # Of CPU time, so that a busy machine does not count: 0.02 s measured.
+    seconds = run(
+        "import time; t = time.process_time(); import fpsolve;"
+        "print(time.process_time() - t)"
+    )
+    assert float(seconds) < 1.0
+
+
+def test_importing_the_schemes_compiles_nothing():
+    # numba would announce it; compilation is lazy.
+    compiled = run(
+        "from numba.core import event\n"
+        "listener = event.RecordingListener()\n"
+        "with event.install_listener('numba:compile', listener):\n"
+        "    import fpsolve as fp; fp.solve, fp.drift_kick, fp.semi_lagrangian\n"
+        "print(len(listener.buffer))"
+    )
+    assert compiled.strip() == "0"
+
+
+def run(code):
+    result = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=False
+    )
+    assert result.returncode == 0, result.stderr
+    return result.stdout
