@@ -194,7 +194,8 @@ def test_titles_state_the_parameters(solution, belt_solution):
 
 def test_titles_can_be_drawn_by_matplotlib(solution, belt_solution):
     for one in (solution, belt_solution):
-        MathTextParser("path").parse(style.parameters(one))
+        parsed = MathTextParser("path").parse(style.parameters(one))
+        assert parsed.width > 0
 
 
 def test_figures_stay_out_of_pyplot_and_leave_the_style_alone(solution):

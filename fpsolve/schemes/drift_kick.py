@@ -70,11 +70,6 @@ class DriftKick:
         }
 
     @property
-    def conserves_mass(self) -> bool:
-        """Whether mass is kept without a correction."""
-        return not self.balanced
-
-    @property
     def n_arrays(self) -> float:
         """Densities alive during a run: unknown, scratch, and the angle step's."""
         return 2.0 + self.kick.n_arrays

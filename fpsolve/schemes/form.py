@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fpsolve._kernels.functionals import row_sums, scale_rows
-from fpsolve.errors import GridMismatchError
 from fpsolve.grids import PhaseSpaceGrid
 from fpsolve.models import LayDownModel
 
@@ -118,9 +117,3 @@ def balanced_form(model: LayDownModel, grid: PhaseSpaceGrid) -> DensityForm:
     potential = np.broadcast_to(model.potential.value(*grid.plane()), grid.shape[:2])
     depth = np.minimum(potential - potential.min(), DEEPEST)
     return DensityForm(grid, np.exp(-depth))
-
-
-def check_same_grid(grid: PhaseSpaceGrid, p: Array) -> None:
-    """Raise GridMismatchError unless p has the grid's shape."""
-    if np.shape(p) != grid.shape:
-        raise GridMismatchError(grid.shape, np.shape(p))

@@ -33,7 +33,6 @@ class SemiLagrangian:
     """
 
     name = "semi_lagrangian"
-    conserves_mass = False
 
     def __init__(
         self,
