@@ -189,8 +189,8 @@ class Run:
     ) -> Solution:
         """Run to the end; what stops it leaves with the partial solution.
 
-        With extrapolation the finished run at ds is the `fallback` for an interrupt
-        of the one at ds/2.
+        With extrapolation the finished run at ds is the `fallback`: it is what is
+        left when the one at ds/2 stops.
         """
         try:
             self._record(0)
@@ -201,14 +201,10 @@ class Run:
                 self._record(last)
                 report(n_before + last, n_total, self.schedule.s(last))
         except RunError as error:
-            error.solution = self._solution("failed", str(error))
+            error.solution = self._partial("failed", str(error), fallback)
             raise
         except KeyboardInterrupt:
-            message = "stopped by the user"
-            partial = self._solution("interrupted", message)
-            if fallback is not None:
-                message += " during the second run: the first one, not extrapolated"
-                partial = replace(fallback, status="interrupted", message=message)
+            partial = self._partial("interrupted", "stopped by the user", fallback)
             raise RunInterrupted(partial) from None
         return self._solution("finished", "")
 
@@ -216,7 +212,7 @@ class Run:
         s = self.schedule.s(step)
         p = self.scheme.density(self.state)
         extra = {"mass_correction": self.state.correction}
-        if self.scheme.name == "semi_lagrangian":
+        if self.state.theta is not None:
             extra["theta"] = self.state.theta
         self._check_finite(p, s)
         values = self.recorder.record(p, s, **extra)
@@ -249,6 +245,14 @@ class Run:
                 s,
                 allowed.boundary,
             )
+
+    def _partial(
+        self, status: str, message: str, fallback: Solution | None
+    ) -> Solution:
+        if fallback is None:
+            return self._solution(status, message)
+        message += " (in the run at ds/2: this is the one at ds, not extrapolated)"
+        return replace(fallback, status=status, message=message)
 
     def _solution(self, status: str, message: str) -> Solution:
         shape = self.scheme.grid.shape

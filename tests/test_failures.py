@@ -200,3 +200,22 @@ def test_an_interrupted_extrapolation_falls_back_on_the_finished_run():
     assert solution.status == "interrupted"
     assert solution.errors is None
     assert np.array_equal(solution.final, plain.final)
+
+
+def test_a_failure_at_half_the_step_leaves_the_finished_run_at_the_whole_one():
+    class FailsWhenFine(drift_kick):
+        def advance(self, state, s, ds, n_steps=1):
+            super().advance(state, s, ds, n_steps)
+            if ds < 0.1:
+                state.values[0, 0, 0] = np.nan
+
+    with pytest.raises(NonFiniteDensityError, match="density is not finite") as caught:
+        solve(
+            FailsWhenFine(MODEL, GRID), P0, (0.0, 1.0), 0.125, save_at=(0.5, 1.0),
+            extrapolate=True,
+        )  # fmt: skip
+    kept = caught.value.solution
+    expected = solve(drift_kick(MODEL, GRID), P0, (0.0, 1.0), 0.125, save_at=(0.5, 1.0))
+    assert kept.status == "failed"
+    assert "this is the one at ds, not extrapolated" in kept.message
+    np.testing.assert_array_equal(kept.densities, expected.densities)

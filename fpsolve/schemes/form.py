@@ -32,8 +32,9 @@ class State:
         Mass the corrections restore: that of the initial density.
     correction : float
         Relative mass error removed in the last `advance`, signed.
-    theta : float
-        Smallest weight of the adjusted advection in the last `advance`.
+    theta : float or None
+        Smallest weight of the adjusted advection in the last `advance`; None for a
+        scheme without one.
     n_steps : int
         Steps made since the start.
     """
@@ -42,7 +43,7 @@ class State:
     work: Array
     target_mass: float
     correction: float = 0.0
-    theta: float = 1.0
+    theta: float | None = None
     n_steps: int = 0
 
     def swap(self) -> None:

@@ -80,7 +80,9 @@ class SemiLagrangian:
 
     def start(self, p0: Array) -> State:
         """State of a run that begins at p0."""
-        return self.form.start(p0)
+        state = self.form.start(p0)
+        state.theta = 1.0
+        return state
 
     def density(self, state: State) -> Array:
         """The density of a state; a view that the next step overwrites."""
@@ -92,13 +94,13 @@ class SemiLagrangian:
         """
         corrections, weights = [], []
         for step in range(n_steps):
+            state.theta = 1.0
             self._step(state, s + step * ds, ds)
             corrections.append(state.correction)
             weights.append(state.theta)
         state.correction, state.theta = max(corrections, key=abs), min(weights)
 
     def _step(self, state: State, s: float, ds: float) -> None:
-        state.theta = 1.0
         if self.splitting == "lie":
             self.transport(state, s, ds)
             self.diffuse(state.values, s, ds, state.values)
