@@ -12,7 +12,7 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from fpsolve import diagnostics, errors, initial, plotting
+    from fpsolve import diagnostics, errors, initial, paths, plotting, studies
     from fpsolve.curves import (
         EllipticNozzle,
         FixedBelt,
@@ -32,12 +32,14 @@ if TYPE_CHECKING:
         MemoryLimitError,
         NegativeDensityError,
         NonFiniteDensityError,
+        NonFinitePathError,
         RunInterrupted,
         SteadyStateError,
     )
     from fpsolve.grids import PhaseSpaceGrid
     from fpsolve.io import load
     from fpsolve.models import LayDownModel
+    from fpsolve.paths import Paths, sample_paths
     from fpsolve.potentials import (
         CallablePotential,
         FreePotential,
@@ -61,11 +63,13 @@ _MODULES = {
     "fpsolve.errors": (
         "ConfigurationError DomainTooSmallError FileFormatError FpsolveError "
         "GridMismatchError MassCorrectionError MassDriftError MemoryLimitError "
-        "NegativeDensityError NonFiniteDensityError RunInterrupted SteadyStateError"
+        "NegativeDensityError NonFiniteDensityError NonFinitePathError RunInterrupted "
+        "SteadyStateError"
     ),
     "fpsolve.grids": "PhaseSpaceGrid",
     "fpsolve.io": "load",
     "fpsolve.models": "LayDownModel",
+    "fpsolve.paths": "Paths sample_paths",
     "fpsolve.potentials": (
         "CallablePotential FreePotential IsotropicPotential LinearPotential "
         "PowerPotential QuadraticPotential"
@@ -77,7 +81,7 @@ _MODULES = {
     "fpsolve.steady_state": "SteadyState steady_state",
     "fpsolve.suggestions": "suggest_grid suggest_step",
 }
-_SUBMODULES = ("diagnostics", "errors", "initial", "plotting")
+_SUBMODULES = ("diagnostics", "errors", "initial", "paths", "plotting", "studies")
 _HOME = {name: home for home, names in _MODULES.items() for name in names.split()}
 
 __all__ = [
@@ -99,7 +103,9 @@ __all__ = [
     "MovingBelt",
     "NegativeDensityError",
     "NonFiniteDensityError",
+    "NonFinitePathError",
     "OscillatingNozzle",
+    "Paths",
     "PhaseSpaceGrid",
     "PowerPotential",
     "Process",
@@ -115,10 +121,13 @@ __all__ = [
     "errors",
     "initial",
     "load",
+    "paths",
     "plotting",
+    "sample_paths",
     "semi_lagrangian",
     "solve",
     "steady_state",
+    "studies",
     "suggest_grid",
     "suggest_step",
 ]

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import copyreg
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 __all__ = [
@@ -23,6 +23,7 @@ __all__ = [
     "MemoryLimitError",
     "NegativeDensityError",
     "NonFiniteDensityError",
+    "NonFinitePathError",
     "RunError",
     "RunInterrupted",
     "SteadyStateError",
@@ -120,6 +121,36 @@ class NonFiniteDensityError(RunError):
         )
         self.s = s
         self.index = index
+
+
+class NonFinitePathError(RunError):
+    """A path came to a point where the force, or its own position, is not finite.
+
+    Parameters
+    ----------
+    path : int
+        Number of the path; all paths of its ensemble stop with it.
+    s : float
+        Arclength at the beginning of the step.
+    xi : (float, float)
+        Where the path was.
+    gradient : (float, float)
+        ∇B there.
+    """
+
+    def __init__(
+        self, path: int, s: float, xi: Sequence[float], gradient: Sequence[float]
+    ) -> None:
+        (xi1, xi2), (slope1, slope2) = xi, gradient
+        super().__init__(
+            f"path {path} cannot go on at s = {s:g}: the gradient of the potential at "
+            f"xi = ({xi1:g}, {xi2:g}) is ({slope1:g}, {slope2:g}); define it wherever "
+            "a path may come, or start the paths closer to the origin."
+        )
+        self.path = path
+        self.s = s
+        self.xi = float(xi1), float(xi2)
+        self.gradient = float(slope1), float(slope2)
 
 
 class DomainTooSmallError(RunError):
@@ -220,13 +251,19 @@ class MemoryLimitError(FpsolveError):
     ----------
     required, available : int
         Memory in bytes.
+    remedy : str
+        What takes less.
     """
 
-    def __init__(self, required: int, available: int) -> None:
+    def __init__(
+        self,
+        required: int,
+        available: int,
+        remedy: str = "save fewer densities, choose a coarser grid",
+    ) -> None:
         super().__init__(
             f"the run needs {_bytes_text(required)} but {_bytes_text(available)} are "
-            "available; save fewer densities, choose a coarser grid, or raise "
-            "`memory_limit`."
+            f"available; {remedy}, or raise `memory_limit`."
         )
         self.required = required
         self.available = available

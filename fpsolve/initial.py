@@ -63,7 +63,7 @@ def gaussian(
         it is cut by the box or too narrow for the cells.
     """
     mean1, mean2 = _checked_mean(grid, mean)
-    covariance = _checked_covariance(variance)
+    covariance = checked_covariance(variance)
     precision = np.linalg.inv(covariance)
     xi1, xi2, alpha = grid.mesh()
     away1, away2 = xi1 - mean1, xi2 - mean2
@@ -166,7 +166,7 @@ def _checked_mean(grid: PhaseSpaceGrid, mean: Any) -> tuple[float, float]:
     return mean1, mean2
 
 
-def _checked_covariance(variance: ArrayLike) -> NDArray[np.float64]:
+def checked_covariance(variance: ArrayLike) -> NDArray[np.float64]:
     """Return the 2x2 covariance matrix; ValueError unless positive definite."""
     given = np.asarray(variance, dtype=np.float64)
     if given.shape not in ((), (2,), (2, 2)):

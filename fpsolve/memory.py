@@ -32,7 +32,7 @@ def required_memory(
     return int(nbytes * (n_arrays + kept)) + OVERHEAD
 
 
-def check_memory(required: int, limit: int | None = None) -> None:
+def check_memory(required: int, limit: int | None = None, *remedy: str) -> None:
     """Raise MemoryLimitError if `required` bytes are more than may be used.
 
     Parameters
@@ -40,7 +40,9 @@ def check_memory(required: int, limit: int | None = None) -> None:
     required : int
     limit : int, optional
         Bytes allowed; by default what the machine has available now.
+    *remedy : str
+        What takes less memory, when it is not a coarser grid.
     """
     available = psutil.virtual_memory().available if limit is None else limit
     if not required <= available:
-        raise MemoryLimitError(required, int(available))
+        raise MemoryLimitError(required, int(available), *remedy)

@@ -20,6 +20,12 @@ EXAMPLES = [
         "or choose a scheme that is stable for this noise.",
     ),
     (
+        errors.NonFinitePathError(17, 0.5, (2.0, 3.0), (float("nan"), 1.0)),
+        "path 17 cannot go on at s = 0.5: the gradient of the potential at xi = (2, 3) "
+        "is (nan, 1); define it wherever a path may come, or start the paths closer to "
+        "the origin.",
+    ),
+    (
         errors.DomainTooSmallError(0.02, 6.0),
         "boundary mass 0.02: the box of half width 6 is too small; enlarge "
         "`half_width`.",
@@ -44,6 +50,11 @@ EXAMPLES = [
         errors.MemoryLimitError(required=3 * 2**30, available=2**29),
         "the run needs 3 GiB but 512 MiB are available; save fewer densities, choose "
         "a coarser grid, or raise `memory_limit`.",
+    ),
+    (
+        errors.MemoryLimitError(2**30, 2**29, "sample fewer paths"),
+        "the run needs 1 GiB but 512 MiB are available; sample fewer paths, or raise "
+        "`memory_limit`.",
     ),
     (
         errors.SteadyStateError(residual=1e-3, tolerance=1e-8),

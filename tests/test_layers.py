@@ -8,12 +8,17 @@ FLOORS = {
     "errors": 0, "_kernels": 0, "_checks": 0, "_compilation": 0,
     "potentials": 1, "curves": 1, "models": 1,
     "grids": 2, "initial": 2, "diagnostics": 2, "process": 2, "decay": 2,
+    "schedule": 2, "memory": 2, "progress": 2, "provenance": 2,
+    "paths": 2,
     "schemes": 3,
-    "solution": 4, "solve": 4, "recording": 4, "schedule": 4, "memory": 4,
-    "progress": 4, "provenance": 4, "extrapolation": 4, "steady_state": 4,
+    "solution": 4, "solve": 4, "recording": 4, "extrapolation": 4, "steady_state": 4,
     "suggestions": 4,
-    "io": 6, "plotting": 6, "config": 6, "cli": 6, "__main__": 6,
+    "io": 6, "plotting": 6, "config": 6, "studies": 6, "cli": 6, "__main__": 6,
 }  # fmt: skip
+# Independent answers to the same question: they never import each other, nor, being
+# on floor 2, the solver, not even inside a function.
+ORACLES = {"paths"}
+SOLVER = {name for name, floor in FLOORS.items() if floor in (3, 4)}
 ENTRY_ONLY = {"matplotlib", "typer", "rich", "dask", "xarray", "pydantic"}
 
 
@@ -46,3 +51,33 @@ def test_imports_go_down_the_floors_only():
                 assert FLOORS[parts[1]] <= own, f"{path.name} imports {name}"
             if own < 6:
                 assert parts[0] not in ENTRY_ONLY, f"{path.name} imports {name}"
+
+
+def all_imports(tree):
+    """Modules imported anywhere, inside functions and for type checkers too."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom) and node.module:
+            yield from (f"{node.module}.{alias.name}" for alias in node.names)
+
+
+def test_the_oracles_import_neither_the_solver_nor_each_other():
+    for oracle in ORACLES:
+        for path in (PACKAGE / oracle).rglob("*.py"):
+            for name in all_imports(ast.parse(path.read_text())):
+                parts = name.split(".")
+                if parts[0] == "fpsolve" and len(parts) > 1:
+                    forbidden = (SOLVER | ORACLES) - {oracle}
+                    assert parts[1] not in forbidden, f"{path.name} imports {name}"
+
+
+def test_nothing_below_the_studies_imports_an_oracle():
+    for path in PACKAGE.rglob("*.py"):
+        own = module_of(path)
+        if own in ORACLES or FLOORS.get(own, 6) >= 6:
+            continue
+        for name in all_imports(ast.parse(path.read_text())):
+            parts = name.split(".")
+            if parts[0] == "fpsolve" and len(parts) > 1:
+                assert parts[1] not in ORACLES, f"{path.name} imports {name}"

@@ -1,0 +1,449 @@
+"""Steps of many paths at once: random numbers, forces, and three integrators.
+
+Paths are taken in blocks of `LANES`. The numbers of a block lie in one flat work
+array `w`, each quantity in a row of its own, so that the compiler sees that no two
+loops overlap and turns every loop into vector instructions. A block is always worked
+through as a whole, its unused lanes too: a path is then bitwise the same whatever its
+neighbours are.
+"""
+
+import math
+
+import numpy as np
+from numba import njit, prange
+
+LANES = 64
+# Rows of the work array: position, tangent, full turns of the angle.
+XI1, XI2, COSINE, SINE, TURNS = (LANES * row for row in range(5))
+# Four rows of standard normal numbers, then the angle by which noise turns the path.
+NORMAL, ANGLE = 5 * LANES, 9 * LANES
+FORCE1, FORCE2 = 10 * LANES, 11 * LANES
+KEPT1, KEPT2, KEPT3, KEPT4, KEPT5 = (LANES * row for row in range(12, 17))
+N_ROWS = 17
+N_STATE = 5
+
+FREE, QUADRATIC, LINEAR, EVEN_POWER, POWER = range(5)
+SPLITTING, EULER_MARUYAMA, HEUN = range(3)
+
+MASK = 0xFFFFFFFF
+MULTIPLIER0, MULTIPLIER1 = 0xD2511F53, 0xCD9E8D57
+WEYL0, WEYL1 = 0x9E3779B9, 0xBB67AE85
+UNIT = 2.0**-32
+# Bits of sqrt(1/2), and where the exponent of a double begins.
+ROOT_HALF, EXPONENT = 0x3FE6A09E667F3BCD, 52
+LN2, TURN = math.log(2.0), 2.0 * math.pi
+# tanh(16) is one to 3e-14; beyond, the force is cut to this without effect.
+FARTHEST = 16.0
+# Below this distance the direction of a force ξ/|ξ| fades out; |ξ|² must not underflow.
+NEAREST = 1e-150
+
+
+@njit(cache=True, forceinline=True, fastmath={"contract"}, error_model="numpy")
+def philox_round(c0, c1, c2, c3, k0, k1):
+    """One round of Philox: two 32 by 32 bit products, crossed and mixed with keys."""
+    p0 = MULTIPLIER0 * c0
+    p1 = MULTIPLIER1 * c2
+    high0, high1 = (p0 >> 32) & MASK, (p1 >> 32) & MASK
+    return high1 ^ c1 ^ k0, p1 & MASK, high0 ^ c3 ^ k1, p0 & MASK
+
+
+@njit(cache=True, forceinline=True, fastmath={"contract"}, error_model="numpy")
+def philox(c0, c1, c2, c3, k0, k1):
+    """Philox 4x32-10: four random 32-bit words of a counter under a key.
+
+    The rounds are written out: a loop would keep the one over lanes from being
+    turned into vector instructions.
+    """
+    c0, c1, c2, c3 = philox_round(c0, c1, c2, c3, k0, k1)
+    k0, k1 = (k0 + WEYL0) & MASK, (k1 + WEYL1) & MASK
+    c0, c1, c2, c3 = philox_round(c0, c1, c2, c3, k0, k1)
+    k0, k1 = (k0 + WEYL0) & MASK, (k1 + WEYL1) & MASK
+    c0, c1, c2, c3 = philox_round(c0, c1, c2, c3, k0, k1)
+    k0, k1 = (k0 + WEYL0) & MASK, (k1 + WEYL1) & MASK
+    c0, c1, c2, c3 = philox_round(c0, c1, c2, c3, k0, k1)
+    k0, k1 = (k0 + WEYL0) & MASK, (k1 + WEYL1) & MASK
+    c0, c1, c2, c3 = philox_round(c0, c1, c2, c3, k0, k1)
+    k0, k1 = (k0 + WEYL0) & MASK, (k1 + WEYL1) & MASK
+    c0, c1, c2, c3 = philox_round(c0, c1, c2, c3, k0, k1)
+    k0, k1 = (k0 + WEYL0) & MASK, (k1 + WEYL1) & MASK
+    c0, c1, c2, c3 = philox_round(c0, c1, c2, c3, k0, k1)
+    k0, k1 = (k0 + WEYL0) & MASK, (k1 + WEYL1) & MASK
+    c0, c1, c2, c3 = philox_round(c0, c1, c2, c3, k0, k1)
+    k0, k1 = (k0 + WEYL0) & MASK, (k1 + WEYL1) & MASK
+    c0, c1, c2, c3 = philox_round(c0, c1, c2, c3, k0, k1)
+    k0, k1 = (k0 + WEYL0) & MASK, (k1 + WEYL1) & MASK
+    return philox_round(c0, c1, c2, c3, k0, k1)
+
+
+@njit(cache=True, forceinline=True, fastmath={"contract"}, error_model="numpy")
+def cosine_sine(angle):
+    """cos and sin of an angle in [-π, π]: Taylor at a quarter of it, doubled twice."""
+    x = 0.25 * angle
+    y = x * x
+    c = 1 / 479001600 - y * (1 / 87178291200 - y / 20922789888000)
+    c = 1 / 720 - y * (1 / 40320 - y * (1 / 3628800 - y * c))
+    c = 1 - y * (1 / 2 - y * (1 / 24 - y * c))
+    s = 1 / 39916800 - y * (1 / 6227020800 - y / 1307674368000)
+    s = 1 / 120 - y * (1 / 5040 - y * (1 / 362880 - y * s))
+    s = x * (1 - y * (1 / 6 - y * s))
+    c, s = (c - s) * (c + s), 2 * c * s
+    return (c - s) * (c + s), 2 * c * s
+
+
+def _pade_of_tanh(n):
+    """Coefficients in x² of the Padé approximants P, Q with tanh x = x P(x²)/Q(x²).
+
+    They are the odd and the even part of the diagonal approximant of exp(2x).
+    """
+    f = math.factorial
+    terms = [f(2 * n - k) * 2**k / (f(k) * f(n - k)) for k in range(n + 1)]
+    odd, even = terms[1::2], terms[::2]
+    return tuple(t / odd[0] for t in odd), tuple(t / even[0] for t in even)
+
+
+_P, _Q = _pade_of_tanh(8)
+P1, P2, P3 = _P[1:]
+Q1, Q2, Q3, Q4 = _Q[1:]
+
+
+@njit(cache=True, forceinline=True, fastmath={"contract"}, error_model="numpy")
+def tanh_ratio(z):
+    """Numbers n, d with tanh(√z)/√z = n/d, to rounding for z up to `FARTHEST`²."""
+    y = z / 16
+    n = 1 + y * (P1 + y * (P2 + y * P3))
+    d = 1 + y * (Q1 + y * (Q2 + y * (Q3 + y * Q4)))
+    # tanh 2x = 2 tanh x / (1 + tanh² x), twice.
+    n, d = n * d, d * d + y * n * n
+    return n * d, d * d + 4 * y * n * n
+
+
+@njit(cache=True, forceinline=True, fastmath={"contract"}, error_model="numpy")
+def turns_taken(sign0, sign1, direction):
+    """Four times the full turns in a rotation by less than π towards `direction`.
+
+    The angle has made one when the tangent passes the negative ξ1 axis; `sign0` and
+    `sign1` are the signs of its second component before and after.
+    """
+    return (sign0 - sign1) * (1 + math.copysign(1.0, direction) * sign0)
+
+
+@njit(cache=True, fastmath={"contract"}, error_model="numpy")
+def standard_normals(path, group, key0, key1, w, bits):
+    """Four standard normal numbers for every lane, by Box and Muller's method.
+
+    The counter is (path, group); one group serves four steps.
+    """
+    for i in range(LANES):
+        low, high = (path + i) & MASK, ((path + i) >> 32) & MASK
+        c0, c1, c2, c3 = philox(low, high, group, 0, key0, key1)
+        w[NORMAL + i] = (c0 + 0.5) * UNIT
+        w[NORMAL + LANES + i] = (c1 + 0.5) * UNIT
+        w[NORMAL + 2 * LANES + i] = (c2 + 0.5) * UNIT
+        w[NORMAL + 3 * LANES + i] = (c3 + 0.5) * UNIT
+    for pair in (NORMAL, NORMAL + 2 * LANES):
+        for i in range(LANES):
+            exponent = (bits[pair + i] - ROOT_HALF) >> EXPONENT
+            bits[KEPT1 + i] = bits[pair + i] - (exponent << EXPONENT)
+            w[KEPT2 + i] = exponent
+        for i in range(LANES):
+            # The mantissa m lies in [√½, √2): ln m = 2 artanh((m - 1)/(m + 1)).
+            x = (w[KEPT1 + i] - 1) / (w[KEPT1 + i] + 1)
+            y = x * x
+            series = 1 / 11 + y * (1 / 13 + y * (1 / 15 + y * (1 / 17 + y / 19)))
+            series = 1 / 3 + y * (1 / 5 + y * (1 / 7 + y * (1 / 9 + y * series)))
+            logarithm = w[KEPT2 + i] * LN2 + 2 * x * (1 + y * series)
+            radius = math.sqrt(-2 * logarithm)
+            c, s = cosine_sine(TURN * (w[pair + LANES + i] - 0.5))
+            w[pair + i] = radius * c
+            w[pair + LANES + i] = radius * s
+
+
+@njit(cache=True, fastmath={"contract"}, error_model="numpy")
+def translate_block(half, shift1, shift2, w):
+    """ξ ← ξ + half · τ - shift."""
+    for i in range(LANES):
+        w[XI1 + i] += half * w[COSINE + i] - shift1
+        w[XI2 + i] += half * w[SINE + i] - shift2
+
+
+@njit(cache=True, fastmath={"contract"}, error_model="numpy")
+def force_block(kind, first, second, w):
+    """∇B at ξ: kind and the two parameters of the potential."""
+    if kind == QUADRATIC:
+        for i in range(LANES):
+            w[FORCE1 + i] = first * w[XI1 + i]
+            w[FORCE2 + i] = second * w[XI2 + i]
+    elif kind == LINEAR:
+        for i in range(LANES):
+            radius = math.sqrt(w[XI1 + i] * w[XI1 + i] + w[XI2 + i] * w[XI2 + i])
+            slope = first / max(radius, NEAREST)
+            w[FORCE1 + i] = slope * w[XI1 + i]
+            w[FORCE2 + i] = slope * w[XI2 + i]
+    elif kind == EVEN_POWER:
+        for i in range(LANES):
+            slope = first
+            square = w[XI1 + i] * w[XI1 + i] + w[XI2 + i] * w[XI2 + i]
+            for _ in range(int(second) // 2 - 1):
+                slope *= square
+            w[FORCE1 + i] = slope * w[XI1 + i]
+            w[FORCE2 + i] = slope * w[XI2 + i]
+    elif kind == POWER:
+        for i in range(LANES):
+            square = w[XI1 + i] * w[XI1 + i] + w[XI2 + i] * w[XI2 + i]
+            slope = first * max(square, NEAREST * NEAREST) ** (0.5 * second - 1)
+            w[FORCE1 + i] = slope * w[XI1 + i]
+            w[FORCE2 + i] = slope * w[XI2 + i]
+    else:
+        for i in range(LANES):
+            w[FORCE1 + i] = 0.0
+            w[FORCE2 + i] = 0.0
+
+
+@njit(cache=True, fastmath={"contract"}, error_model="numpy")
+def limit_force(quarter, w):
+    """Cut |∇B| to `FARTHEST`/quarter, beyond which tanh is one anyway."""
+    n_far = 0
+    for i in range(LANES):
+        square = w[FORCE1 + i] * w[FORCE1 + i] + w[FORCE2 + i] * w[FORCE2 + i]
+        n_far += 1 if square * quarter * quarter > FARTHEST * FARTHEST else 0
+    if n_far == 0:
+        return
+    for i in range(LANES):
+        size = quarter * math.hypot(w[FORCE1 + i], w[FORCE2 + i])
+        if size > FARTHEST:
+            w[FORCE1 + i] *= FARTHEST / size
+            w[FORCE2 + i] *= FARTHEST / size
+
+
+@njit(cache=True, fastmath={"contract"}, error_model="numpy")
+def angle_block(normal, noise_scale, w):
+    """Angle of the noise: A √ds times the standard normal number of this step."""
+    for i in range(LANES):
+        w[ANGLE + i] = noise_scale * w[normal + i]
+
+
+@njit(cache=True, fastmath={"contract"}, error_model="numpy")
+def kick_block(quarter, w):
+    """R½ D R½ at fixed ξ: closed-form rotations around the one by noise.
+
+    With u = tanh(|∇B| ds/4)/|∇B| = n/d, R½ turns τ by twice the argument of
+    (1 - u ∇B·τ, -u ∇B·τ⊥); only directions matter, so the one division is at the end.
+    """
+    for i in range(LANES):
+        c, s, f1, f2 = w[COSINE + i], w[SINE + i], w[FORCE1 + i], w[FORCE2 + i]
+        n, d = tanh_ratio((f1 * f1 + f2 * f2) * (quarter * quarter))
+        f1, f2 = quarter * n * f1, quarter * n * f2
+        x, y = d - (f1 * c + f2 * s), f1 * s - f2 * c
+        p, q, m = (x - y) * (x + y), 2 * x * y, x * x + y * y
+        c1, s1 = c * p - s * q, s * p + c * q
+        sign, sign1 = math.copysign(1.0, s), math.copysign(1.0, s1)
+        quarters = turns_taken(sign, sign1, y)
+
+        turns = math.floor(w[ANGLE + i] / TURN + 0.5)
+        c, s = cosine_sine(w[ANGLE + i] - turns * TURN)
+        c2, s2 = c1 * c - s1 * s, s1 * c + c1 * s
+        sign = math.copysign(1.0, s2)
+        quarters += turns_taken(sign1, sign, s)
+
+        x, y = d * m - (f1 * c2 + f2 * s2), f1 * s2 - f2 * c2
+        m = 1 / (m * (x * x + y * y))
+        p, q = m * (x - y) * (x + y), 2 * m * x * y
+        c3, s3 = c2 * p - s2 * q, s2 * p + c2 * q
+        quarters += turns_taken(sign, math.copysign(1.0, s3), y)
+        # Rounding moves the tangent off the circle; one Newton step brings it back.
+        length = 1.5 - 0.5 * (c3 * c3 + s3 * s3)
+        w[COSINE + i], w[SINE + i] = length * c3, length * s3
+        w[TURNS + i] += turns + 0.25 * quarters
+
+
+@njit(cache=True, fastmath={"contract"}, error_model="numpy")
+def rotate_block(w):
+    """τ turned by the angles of the row `ANGLE`, of any size."""
+    for i in range(LANES):
+        turns = math.floor(w[ANGLE + i] / TURN + 0.5)
+        x, y = cosine_sine(w[ANGLE + i] - turns * TURN)
+        c, s = w[COSINE + i], w[SINE + i]
+        c1, s1 = c * x - s * y, s * x + c * y
+        sign, sign1 = math.copysign(1.0, s), math.copysign(1.0, s1)
+        length = 1.5 - 0.5 * (c1 * c1 + s1 * s1)
+        w[COSINE + i], w[SINE + i] = length * c1, length * s1
+        w[TURNS + i] += turns + 0.25 * turns_taken(sign, sign1, y)
+
+
+@njit(cache=True, fastmath={"contract"}, error_model="numpy")
+def splitting_step(ds, kind, first, second, shifts, w):
+    """T½ R½ D R½ T½."""
+    translate_block(0.5 * ds, shifts[0, 0], shifts[0, 1], w)
+    force_block(kind, first, second, w)
+    limit_force(0.25 * ds, w)
+    kick_block(0.25 * ds, w)
+    translate_block(0.5 * ds, shifts[1, 0], shifts[1, 1], w)
+
+
+@njit(cache=True, fastmath={"contract"}, error_model="numpy")
+def euler_step(ds, kind, first, second, shifts, w):
+    """Euler-Maruyama: both drifts at the beginning of the step."""
+    force_block(kind, first, second, w)
+    for i in range(LANES):
+        drift = w[FORCE1 + i] * w[SINE + i] - w[FORCE2 + i] * w[COSINE + i]
+        w[ANGLE + i] += ds * drift
+    translate_block(ds, shifts[0, 0] + shifts[1, 0], shifts[0, 1] + shifts[1, 1], w)
+    rotate_block(w)
+
+
+@njit(cache=True, fastmath={"contract"}, error_model="numpy")
+def heun_step(ds, kind, first, second, shifts, w):
+    """Stochastic Heun: mean of the drifts at both ends of an Euler-Maruyama step."""
+    for i in range(LANES):
+        w[KEPT1 + i], w[KEPT2 + i] = w[COSINE + i], w[SINE + i]
+        w[KEPT3 + i], w[KEPT4 + i] = w[ANGLE + i], w[TURNS + i]
+    half = 0.5 * ds
+    shift1, shift2 = shifts[0, 0] + shifts[1, 0], shifts[0, 1] + shifts[1, 1]
+    force_block(kind, first, second, w)
+    for i in range(LANES):
+        drift = w[FORCE1 + i] * w[SINE + i] - w[FORCE2 + i] * w[COSINE + i]
+        w[KEPT5 + i] = half * drift
+        w[ANGLE + i] += ds * drift
+    translate_block(ds, shift1, shift2, w)
+    rotate_block(w)
+    force_block(kind, first, second, w)
+    for i in range(LANES):
+        c, s = w[COSINE + i], w[SINE + i]
+        drift = w[FORCE1 + i] * s - w[FORCE2 + i] * c
+        w[ANGLE + i] = w[KEPT3 + i] + w[KEPT5 + i] + half * drift
+        w[XI1 + i] += half * (c - w[KEPT1 + i])
+        w[XI2 + i] += half * (s - w[KEPT2 + i])
+        w[COSINE + i], w[SINE + i] = w[KEPT1 + i], w[KEPT2 + i]
+        w[TURNS + i] = w[KEPT4 + i]
+    rotate_block(w)
+
+
+@njit(cache=True, fastmath={"contract"}, error_model="numpy")
+def load_block(state, start, n_lanes, w):
+    """Columns of the state into the work array; unused lanes keep the last path."""
+    for row in range(N_STATE):
+        for i in range(LANES):
+            w[row * LANES + i] = state[row, start + min(i, n_lanes - 1)]
+
+
+@njit(cache=True, fastmath={"contract"}, error_model="numpy")
+def store_block(w, start, n_lanes, state):
+    """The used lanes of the work array back into the state."""
+    for row in range(N_STATE):
+        for i in range(n_lanes):
+            state[row, start + i] = w[row * LANES + i]
+
+
+@njit(cache=True, parallel=True, fastmath={"contract"}, error_model="numpy")
+def advance_paths(
+    path, step, key, ds, noise_scale, potential, shifts, method, trace, state
+):
+    """Advance every path by as many steps as there are pairs of shifts.
+
+    Parameters
+    ----------
+    path, step : int
+        Numbers of the first path and of the first step: the counters of the noise.
+    key : (int, int)
+    ds, noise_scale : float
+        Step and A √ds.
+    potential : (int, float, float)
+        Kind and its two parameters.
+    shifts : ndarray, shape (n_steps, 2, 2)
+        γ over the first and second half of every step.
+    method : int
+    trace : ndarray, shape (n_steps, 5, n_paths) or (0, 5, 0)
+        Receives the state after every step, if it has room.
+    state : ndarray, shape (5, n_paths)
+        ξ1, ξ2, cos α, sin α and full turns; changed in place.
+    """
+    n_paths, n_steps = state.shape[1], shifts.shape[0]
+    for block in prange((n_paths + LANES - 1) // LANES):
+        w = np.zeros(N_ROWS * LANES)
+        bits = w.view(np.int64)
+        start = block * LANES
+        n_lanes = min(LANES, n_paths - start)
+        load_block(state, start, n_lanes, w)
+        for j in range(n_steps):
+            number = (step + j) & 3
+            if j == 0 or number == 0:
+                group = (step + j) >> 2
+                standard_normals(path + start, group, key[0], key[1], w, bits)
+            angle_block(NORMAL + number * LANES, noise_scale, w)
+            if method == SPLITTING:
+                splitting_step(ds, *potential, shifts[j], w)
+            elif method == EULER_MARUYAMA:
+                euler_step(ds, *potential, shifts[j], w)
+            else:
+                heun_step(ds, *potential, shifts[j], w)
+            if trace.shape[0] > 0:
+                store_block(w, start, n_lanes, trace[j])
+        store_block(w, start, n_lanes, state)
+
+
+@njit(cache=True, parallel=True, fastmath={"contract"}, error_model="numpy")
+def fill_normals(path, group, key, normals):
+    """Noise of the four steps of a group: standard normal, one column a path.
+
+    Parameters
+    ----------
+    path, group : int
+    key : (int, int)
+    normals : ndarray, shape (4, n_paths)
+    """
+    n_paths = normals.shape[1]
+    for block in prange((n_paths + LANES - 1) // LANES):
+        w = np.zeros(N_ROWS * LANES)
+        start = block * LANES
+        standard_normals(path + start, group, key[0], key[1], w, w.view(np.int64))
+        for number in range(4):
+            for i in range(min(LANES, n_paths - start)):
+                normals[number, start + i] = w[NORMAL + number * LANES + i]
+
+
+@njit(cache=True, parallel=True, fastmath={"contract"}, error_model="numpy")
+def kick_paths(quarter, angles, forces, state):
+    """R½ D R½ of every path with given noise and given ∇B.
+
+    Parameters
+    ----------
+    quarter : float
+        ds/4.
+    angles : ndarray, shape (n_paths,)
+    forces : ndarray, shape (2, n_paths)
+    state : ndarray, shape (5, n_paths)
+    """
+    n_paths = state.shape[1]
+    for block in prange((n_paths + LANES - 1) // LANES):
+        w = np.zeros(N_ROWS * LANES)
+        start = block * LANES
+        n_lanes = min(LANES, n_paths - start)
+        load_block(state, start, n_lanes, w)
+        for i in range(n_lanes):
+            w[ANGLE + i] = angles[start + i]
+            w[FORCE1 + i] = forces[0, start + i]
+            w[FORCE2 + i] = forces[1, start + i]
+        limit_force(quarter, w)
+        kick_block(quarter, w)
+        store_block(w, start, n_lanes, state)
+
+
+@njit(cache=True, parallel=True, fastmath={"contract"}, error_model="numpy")
+def rotate_paths(angles, state):
+    """The tangent of every path turned by its own angle, of any size.
+
+    Parameters
+    ----------
+    angles : ndarray, shape (n_paths,)
+    state : ndarray, shape (5, n_paths)
+    """
+    n_paths = state.shape[1]
+    for block in prange((n_paths + LANES - 1) // LANES):
+        w = np.zeros(N_ROWS * LANES)
+        start = block * LANES
+        n_lanes = min(LANES, n_paths - start)
+        load_block(state, start, n_lanes, w)
+        for i in range(n_lanes):
+            w[ANGLE + i] = angles[start + i]
+        rotate_block(w)
+        store_block(w, start, n_lanes, state)

@@ -1,0 +1,81 @@
+"""Averages along paths, of which Theorem 3.3 speaks."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fpsolve.paths.ensemble import angle_of
+from fpsolve.paths.trajectory import traced
+
+if TYPE_CHECKING:
+    from fpsolve.paths.result import Paths
+
+__all__ = ["Observable", "observed", "time_averages"]
+
+Array = NDArray[np.float64]
+Observable: TypeAlias = Callable[[Array, Array, Array], Any]
+
+# Paths whose states are held at every step of a leg.
+GROUP = 1024
+
+
+def observed(f: Observable, xi1: Array, xi2: Array, alpha: Array) -> Array:
+    """Values of f, checked.
+
+    Raises
+    ------
+    ValueError
+        If f does not work elementwise or gives NaN or infinity.
+    """
+    values = np.asarray(f(xi1, xi2, alpha), dtype=np.float64)
+    if values.shape not in ((), xi1.shape):
+        raise ValueError(
+            f"`f` must work elementwise, got shape {values.shape} for arguments of "
+            f"shape {xi1.shape}."
+        )
+    if not np.isfinite(values).all():
+        bad = tuple(np.argwhere(~np.isfinite(np.broadcast_to(values, xi1.shape)))[0])
+        raise ValueError(
+            f"`f` must be finite on the paths, got {values[bad]:g} at xi = "
+            f"({xi1[bad]:g}, {xi2[bad]:g}), alpha = {alpha[bad]:g}."
+        )
+    return np.broadcast_to(values, xi1.shape)
+
+
+def time_averages(paths: Paths, functions: Sequence[Observable]) -> Array:
+    """(1/s)∫ f ds by the trapezoidal rule; shape (n_functions, n_saved, n_paths)."""
+    averages = np.empty((len(functions), len(paths.s), paths.n_paths))
+    for first in range(0, paths.n_paths, GROUP):
+        n = min(GROUP, paths.n_paths - first)
+        averages[:, :, first : first + n] = group_averages(paths, functions, first, n)
+    return averages
+
+
+def group_averages(
+    paths: Paths, functions: Sequence[Observable], first: int, n: int
+) -> Array:
+    """The averages of a group of paths; shape (n_functions, n_saved, n)."""
+    ensemble = paths.ensemble
+    begin = ensemble.first_step
+    saves = ensemble.schedule.saves[: len(paths.s)]
+    averages = np.full((len(functions), len(saves), n), np.nan)
+    # Sums over all steps so far; the ends of the trapezoidal rule count one half.
+    sums, starts = np.zeros((2, len(functions), n))
+    for step, states in traced(paths, first, n):
+        xi1, xi2, alpha = states[:, 0], states[:, 1], angle_of(states)
+        inside = [at for at, stop in enumerate(saves) if 0 <= stop - step < len(states)]
+        for row, f in enumerate(functions):
+            values = observed(f, xi1, xi2, alpha)
+            if step == begin:
+                starts[row] = values[0]
+            for at in inside:
+                ends = 0.5 * (starts[row] + values[saves[at] - step])
+                here = sums[row] + values[: saves[at] - step + 1].sum(axis=0) - ends
+                if saves[at] > begin:
+                    averages[row, at] = here / (saves[at] - begin)
+            sums[row] += values.sum(axis=0)
+    return averages

@@ -1,0 +1,64 @@
+"""What drives a path besides noise: the force ∇B and the motion of the curve."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fpsolve._kernels import paths as kernels
+from fpsolve.curves.curve import Curve
+from fpsolve.potentials import (
+    FreePotential,
+    LinearPotential,
+    PowerPotential,
+    QuadraticPotential,
+)
+from fpsolve.potentials.potential import Potential
+
+__all__ = ["compiled_potential", "half_step_shifts"]
+
+
+def compiled_potential(potential: Potential) -> tuple[int, float, float] | None:
+    """Kind and two parameters of a potential that the kernels know, else None.
+
+    ∇B is (a ξ1, b ξ2) for the kind QUADRATIC, a ξ/‖ξ‖ for LINEAR, and a ‖ξ‖ⁿ⁻² ξ for
+    the powers n.
+    """
+    # A subclass may have a gradient of its own.
+    if type(potential) is FreePotential:
+        return kernels.FREE, 0.0, 0.0
+    if type(potential) is QuadraticPotential:
+        stiffness = potential.sigma1**-2.0, potential.sigma2**-2.0
+        return kernels.QUADRATIC, *stiffness
+    if type(potential) is LinearPotential:
+        return kernels.LINEAR, potential.slope, 0.0
+    if type(potential) is PowerPotential:
+        return compiled_power(potential)
+    return None
+
+
+def compiled_power(potential: PowerPotential) -> tuple[int, float, float]:
+    """The kernels' description of (‖ξ‖/c)ⁿ/n."""
+    n = potential.exponent
+    factor = potential.scale**-n
+    if n == 1:
+        return kernels.LINEAR, factor, 0.0
+    if n == 2:
+        return kernels.QUADRATIC, factor, factor
+    return (kernels.POWER if n % 2 else kernels.EVEN_POWER), factor, n
+
+
+def half_step_shifts(
+    curve: Curve, s_start: float, ds: float, step: int, n_steps: int
+) -> NDArray[np.float64]:
+    """Displacements of γ over both halves of every step; shape (n_steps, 2, 2).
+
+    They depend on the number of a step alone, not on where a computation began. Their
+    sum telescopes, so that rounding does not add up.
+    """
+    if curve.autonomous:
+        half = curve.displacement(0.0, 0.5 * ds)
+        return np.broadcast_to(np.array(half), (n_steps, 2, 2)).copy()
+    halves = np.arange(2 * step, 2 * (step + n_steps) + 1)
+    position = np.stack(curve.position(s_start + 0.5 * ds * halves), axis=-1)
+    return np.ascontiguousarray(np.diff(position, axis=0).reshape(n_steps, 2, 2))

@@ -1,0 +1,105 @@
+"""Points of the plane with the density exp(-B)/Z."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fpsolve.paths.rejection import CellRejection
+from fpsolve.potentials import LinearPotential, PowerPotential, QuadraticPotential
+from fpsolve.potentials.potential import Potential
+
+__all__ = ["GibbsSampler"]
+
+Array = NDArray[np.float64]
+
+N_CELLS = 128
+# e^{-B} relative to its maximum below which nothing is sampled.
+NEGLIGIBLE = 1e-14
+WIDEST = 1e6
+
+
+class GibbsSampler:
+    """Draws ξ from exp(-B)/Z: exactly for powers of ‖ξ‖, else by rejection.
+
+    Parameters
+    ----------
+    potential : Potential
+
+    Raises
+    ------
+    ValueError
+        If exp(-B) has no finite integral.
+    """
+
+    def __init__(self, potential: Potential) -> None:
+        if not potential.normalisable:
+            raise ValueError(
+                f"`potential` must confine, got {potential!r}: exp(-B) has no finite "
+                "integral."
+            )
+        self.potential = potential
+        self.power = as_power(potential)
+        quadratic = type(potential) is QuadraticPotential
+        if not quadratic and self.power is None:
+            self.rejection = plane_rejection(potential)
+
+    def __call__(self, rng: np.random.Generator, n: int) -> Array:
+        """Draw n points, shape (n, 2)."""
+        if type(self.potential) is QuadraticPotential:
+            ranges = self.potential.sigma1, self.potential.sigma2
+            return np.asarray(rng.standard_normal((n, 2)) * ranges)
+        if self.power is not None:
+            return isotropic_power(rng, n, *self.power)
+        return self.rejection(rng, n)
+
+
+def as_power(potential: Potential) -> tuple[float, float] | None:
+    """Exponent n and scale c if B = (‖ξ‖/c)ⁿ/n."""
+    if type(potential) is LinearPotential:
+        return 1.0, 1.0 / potential.slope
+    if type(potential) is PowerPotential:
+        return potential.exponent, potential.scale
+    return None
+
+
+def isotropic_power(
+    rng: np.random.Generator, n: int, exponent: float, scale: float
+) -> Array:
+    """r from r exp(-(r/c)ⁿ/n): (r/c)ⁿ/n has the gamma law of shape 2/n."""
+    energy = rng.gamma(2.0 / exponent, size=n)
+    radius = scale * (exponent * energy) ** (1.0 / exponent)
+    direction = rng.uniform(0.0, 2.0 * np.pi, n)
+    return radius[:, None] * np.stack([np.cos(direction), np.sin(direction)], axis=1)
+
+
+def plane_rejection(potential: Potential) -> CellRejection:
+    """Rejection from exp(-B) on a box that holds it."""
+    half, lowest = 1.0, lowest_value(potential, 1.0)
+    while edge_value(potential, half) - lowest < -np.log(NEGLIGIBLE):
+        half *= 1.3
+        if half > WIDEST:
+            raise ValueError(
+                f"`potential` must grow fast enough to be sampled, got {potential!r}: "
+                f"exp(-B) is not negligible at a distance of {WIDEST:g}."
+            )
+        lowest = min(lowest, lowest_value(potential, half))
+
+    def density(points: Array) -> Array:
+        return np.asarray(np.exp(lowest - potential.value(points[0], points[1])))
+
+    return CellRejection(density, (-half, -half), (half, half), (N_CELLS, N_CELLS))
+
+
+def lowest_value(potential: Potential, half: float) -> float:
+    """Least B on a grid over the box."""
+    line = np.linspace(-half, half, N_CELLS + 1)
+    return float(np.min(potential.value(line[:, None], line[None, :])))
+
+
+def edge_value(potential: Potential, half: float) -> float:
+    """Least B on the edge of the box."""
+    line = np.linspace(-half, half, N_CELLS + 1)
+    side = np.full_like(line, half)
+    edges = ((side, line), (-side, line), (line, side), (line, -side))
+    return min(float(np.min(potential.value(*edge))) for edge in edges)

@@ -1,0 +1,199 @@
+"""Steps of the stochastic differential equation (6) for many paths.
+
+dξ = τ(α) ds - dγ,  dα = -∇B(ξ)·τ⊥(α) ds + A dW.
+
+The state of n paths is an array of shape (5, n): ξ1, ξ2, cos α, sin α and the number
+of full turns. The angle is kept as its cosine and sine, which every step needs.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fpsolve._kernels import paths as kernels
+from fpsolve.errors import NonFinitePathError
+from fpsolve.models import LayDownModel
+from fpsolve.paths.forcing import compiled_potential, half_step_shifts
+
+__all__ = ["METHODS", "Integrator"]
+
+Array = NDArray[np.float64]
+Gradient = Callable[[Array], Array]
+
+METHODS = {
+    "splitting": kernels.SPLITTING,
+    "euler_maruyama": kernels.EULER_MARUYAMA,
+    "heun": kernels.HEUN,
+}
+NO_TRACE = np.zeros((0, kernels.N_STATE, 0))
+# Normal numbers that one call of the generator gives.
+N_NORMALS = 4
+
+
+class Integrator(NamedTuple):
+    """One method with one step for one model and one stream of noise.
+
+    "splitting" is T½ R½ D R½ T½, where T moves ξ at fixed α, R is the exact flow of
+    the angle at fixed ξ and D the noise: weakly of order 2, and safe for every force
+    and every noise, as the angle never moves by a difference quotient.
+    "euler_maruyama" is weakly of order 1, "heun" (stochastic Heun) weakly of order 2.
+
+    Attributes
+    ----------
+    model : LayDownModel
+    method : str
+    ds, s_start : float
+    key : (int, int)
+        From `noise_key`.
+    """
+
+    model: LayDownModel
+    method: str
+    ds: float
+    s_start: float
+    key: tuple[int, int]
+
+    @property
+    def noise_scale(self) -> float:
+        """A √ds."""
+        return self.model.noise * math.sqrt(self.ds)
+
+    def advance(
+        self, state: Array, path: int, step: int, n_steps: int, trace: Array = NO_TRACE
+    ) -> None:
+        """Advance the state in place; `trace` receives it after every step.
+
+        Parameters
+        ----------
+        state : ndarray, shape (5, n_paths)
+        path, step : int
+            Number of the first path and of the first step.
+        n_steps : int
+        trace : ndarray, shape (n_steps, 5, n_paths), optional
+
+        Raises
+        ------
+        NonFinitePathError
+            If a gradient or a position is not finite.
+        """
+        before = state.copy()
+        self._take(state, path, step, n_steps, trace)
+        # A sum is finite unless one of its terms is not.
+        if not math.isfinite(float(state.sum())):
+            bad = int(np.argmin(np.isfinite(state).all(axis=0)))
+            self._complain(before[:, bad : bad + 1], path + bad, step, n_steps)
+
+    def _take(
+        self, state: Array, path: int, step: int, n_steps: int, trace: Array
+    ) -> None:
+        curve = self.model.curve
+        shifts = half_step_shifts(curve, self.s_start, self.ds, step, n_steps)
+        potential = compiled_potential(self.model.potential)
+        if potential is None:
+            self._take_staged(state, path, step, shifts, trace)
+            return
+        kernels.advance_paths(
+            path, step, self.key, self.ds, self.noise_scale, potential, shifts,
+            METHODS[self.method], trace, state,
+        )  # fmt: skip
+
+    def _take_staged(
+        self, state: Array, path: int, step: int, shifts: Array, trace: Array
+    ) -> None:
+        """Step by step, with a gradient that is the user's own code."""
+        take = STAGES[self.method]
+        normals = np.empty((N_NORMALS, state.shape[1]))
+        for j in range(len(shifts)):
+            group, number = divmod(step + j, N_NORMALS)
+            if j == 0 or number == 0:
+                kernels.fill_normals(path, group, self.key, normals)
+            gradient = self._gradient(path, step + j)
+            angles = self.noise_scale * normals[number]
+            take(state, self.ds, angles, shifts[j], gradient)
+            if len(trace):
+                trace[j] = state
+
+    def _gradient(self, path: int, step: int) -> Gradient:
+        """∇B at the positions of a state, shape (2, n_paths), checked."""
+
+        def gradient(state: Array) -> Array:
+            forces = np.stack(self.model.potential.gradient(state[0], state[1]))
+            finite = np.isfinite(forces).all(axis=0)
+            if not finite.all():
+                bad = int(np.argmin(finite))
+                s = self.s_start + step * self.ds
+                raise NonFinitePathError(
+                    path + bad, s, state[:2, bad].tolist(), forces[:, bad].tolist()
+                )
+            return forces
+
+        return gradient
+
+    def _complain(self, state: Array, path: int, step: int, n_steps: int) -> None:
+        """Raise with the place where one path was last finite."""
+        state, trace = state.copy(), np.empty((n_steps, kernels.N_STATE, 1))
+        trace[...] = np.nan
+        start = state[None].copy()
+        self._take(state, path, step, n_steps, trace)
+        visited = np.concatenate([start, trace])[:, :, 0]
+        last = int(np.argmin(np.isfinite(visited).all(axis=1))) - 1
+        place = visited[last, :2]
+        with np.errstate(all="ignore"):
+            slopes = [float(slope) for slope in self.model.potential.gradient(*place)]
+        s = self.s_start + (step + last) * self.ds
+        raise NonFinitePathError(path, s, place.tolist(), slopes)
+
+
+def translate(state: Array, ds: float, shift: Array) -> None:
+    """ξ ← ξ + ds τ - (displacement of γ)."""
+    state[:2] += ds * state[2:4] - shift[:, None]
+
+
+def angular_drift(state: Array, forces: Array) -> Array:
+    """-∇B·τ⊥."""
+    drift: Array = forces[0] * state[3] - forces[1] * state[2]
+    return drift
+
+
+def splitting_step(
+    state: Array, ds: float, angles: Array, shifts: Array, gradient: Gradient
+) -> None:
+    """T½ R½ D R½ T½."""
+    translate(state, 0.5 * ds, shifts[0])
+    kernels.kick_paths(0.25 * ds, angles, gradient(state), state)
+    translate(state, 0.5 * ds, shifts[1])
+
+
+def euler_maruyama_step(
+    state: Array, ds: float, angles: Array, shifts: Array, gradient: Gradient
+) -> None:
+    """Both drifts at the beginning of the step."""
+    turned = ds * angular_drift(state, gradient(state)) + angles
+    translate(state, ds, shifts.sum(axis=0))
+    kernels.rotate_paths(turned, state)
+
+
+def heun_step(
+    state: Array, ds: float, angles: Array, shifts: Array, gradient: Gradient
+) -> None:
+    """Means of the drifts at both ends of an Euler-Maruyama step."""
+    ahead = state.copy()
+    drift = angular_drift(state, gradient(state))
+    translate(ahead, ds, shifts.sum(axis=0))
+    kernels.rotate_paths(ds * drift + angles, ahead)
+    drift_ahead = angular_drift(ahead, gradient(ahead))
+    translate(state, 0.5 * ds, shifts.sum(axis=0))
+    state[:2] += 0.5 * ds * ahead[2:4]
+    kernels.rotate_paths(0.5 * ds * (drift + drift_ahead) + angles, state)
+
+
+STAGES = {
+    "splitting": splitting_step,
+    "euler_maruyama": euler_maruyama_step,
+    "heun": heun_step,
+}

@@ -1,0 +1,210 @@
+"""Laws of the point (ξ, α) at which a path starts."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from fpsolve._checks import check_finite, check_non_negative
+from fpsolve.grids import PhaseSpaceGrid
+from fpsolve.initial import checked_covariance
+from fpsolve.paths.gibbs import GibbsSampler
+from fpsolve.paths.interpolated import InterpolatedDensity
+from fpsolve.potentials import Potential
+
+__all__ = ["DensityLaw", "EquilibriumLaw", "GaussianLaw", "Law", "PointLaw"]
+
+Array = NDArray[np.float64]
+Sample = tuple[Array, Array]
+TURN = 2.0 * np.pi
+
+
+class Law(Protocol):
+    """What `sample_paths` needs of a law of the start."""
+
+    def sample(self, rng: np.random.Generator, n: int) -> Sample:
+        """Draw n points: ξ of shape (n, 2) and α of shape (n,)."""
+
+
+@dataclass(frozen=True)
+class PointLaw:
+    """δ(ξ - ξ0), with the angle α0 or uniform in it.
+
+    Parameters
+    ----------
+    xi : (float, float)
+        The point ξ0; the origin is the point below the nozzle.
+    alpha : float, optional
+        The angle α0 in radians; uniform on [0, 2π) when left out.
+
+    Raises
+    ------
+    ValueError
+        If a number is not finite, or ξ0 not two numbers.
+    """
+
+    xi: tuple[float, float] = (0.0, 0.0)
+    alpha: float | None = None
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "xi", _checked_point("xi", self.xi))
+        if self.alpha is not None:
+            object.__setattr__(self, "alpha", check_finite("alpha", self.alpha))
+
+    def sample(self, rng: np.random.Generator, n: int) -> Sample:
+        """Draw n points: ξ of shape (n, 2) and α of shape (n,)."""
+        if self.alpha is None:
+            return np.tile(self.xi, (n, 1)), rng.uniform(0.0, TURN, n)
+        return np.tile(self.xi, (n, 1)), np.full(n, self.alpha)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return `kind` and the parameters as a JSON-able dictionary."""
+        return {"kind": "point", "xi": list(self.xi), "alpha": self.alpha}
+
+
+@dataclass(frozen=True)
+class GaussianLaw:
+    """exp(-(ξ - m)ᵀ C⁻¹ (ξ - m)/2) exp(κ cos(α - α0)): Gaussian times von Mises.
+
+    The law that `fpsolve.initial.gaussian` puts on a grid.
+
+    Parameters
+    ----------
+    mean : (float, float)
+        Mean m.
+    variance : float, (float, float) or 2x2 matrix
+        One variance for both components, one for each, or the covariance matrix C.
+    angle : float, optional
+        Mean direction α0 in radians; needed when `concentration` is positive.
+    concentration : float
+        Concentration κ >= 0; 0 makes the angle uniform.
+
+    Raises
+    ------
+    ValueError
+        If the variance is not positive definite, the concentration negative, or
+        positive without an angle.
+    """
+
+    mean: tuple[float, float] = (0.0, 0.0)
+    variance: Any = 1.0
+    angle: float | None = None
+    concentration: float = 0.0
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "mean", _checked_point("mean", self.mean))
+        covariance = checked_covariance(self.variance)
+        as_tuples = tuple(tuple(row) for row in covariance.tolist())
+        object.__setattr__(self, "variance", as_tuples)
+        concentration = check_non_negative("concentration", self.concentration)
+        object.__setattr__(self, "concentration", concentration)
+        if self.angle is not None:
+            object.__setattr__(self, "angle", check_finite("angle", self.angle))
+        elif concentration > 0:
+            raise ValueError(
+                "`angle` must be given when `concentration` is positive, got None "
+                f"with concentration {concentration:g}."
+            )
+
+    def sample(self, rng: np.random.Generator, n: int) -> Sample:
+        """Draw n points: ξ of shape (n, 2) and α of shape (n,)."""
+        root = np.linalg.cholesky(np.array(self.variance))
+        xi = np.array(self.mean) + rng.standard_normal((n, 2)) @ root.T
+        alpha = rng.vonmises(self.angle or 0.0, self.concentration, n)
+        return xi, alpha % TURN
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return `kind` and the parameters as a JSON-able dictionary."""
+        return {
+            "kind": "gaussian",
+            "mean": list(self.mean),
+            "variance": [list(row) for row in self.variance],
+            "angle": self.angle,
+            "concentration": self.concentration,
+        }
+
+
+@dataclass(frozen=True)
+class EquilibriumLaw:
+    """μ: exp(-B(ξ)) normalised, uniform in α; equation (10).
+
+    Exact for quadratic, linear and power potentials. Others are sampled by rejection,
+    inside a box beyond whose edges e^{-B} is below 1e-14 of its maximum.
+
+    Parameters
+    ----------
+    potential : Potential
+        Normalisable.
+
+    Raises
+    ------
+    ValueError
+        If exp(-B) has no finite integral.
+
+    References
+    ----------
+    [KMW09]_, section 3.1.1.
+    """
+
+    potential: Potential
+    _sampler: GibbsSampler = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "_sampler", GibbsSampler(self.potential))
+
+    def sample(self, rng: np.random.Generator, n: int) -> Sample:
+        """Draw n points: ξ of shape (n, 2) and α of shape (n,)."""
+        return self._sampler(rng, n), rng.uniform(0.0, TURN, n)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return `kind` and the potential as a JSON-able dictionary."""
+        return {"kind": "equilibrium", "potential": self.potential.to_dict()}
+
+
+@dataclass(frozen=True, eq=False)
+class DensityLaw:
+    """A density known at the cells of a grid, between them by interpolation.
+
+    Points are drawn from the quintic spline through the cell centres, which is
+    periodic like the grid, by rejection; where it is negative it counts as zero. Its
+    difference from the density behind the values is of order six in the spacing.
+
+    Parameters
+    ----------
+    grid : PhaseSpaceGrid
+    p : array_like, shape ``grid.shape``
+        The density; it need not be normalised.
+
+    Raises
+    ------
+    ValueError
+        If p is not finite, has no mass, or more than a hundredth of it is negative;
+        GridMismatchError if it has another shape.
+    """
+
+    grid: PhaseSpaceGrid
+    p: ArrayLike = field(repr=False)
+    _sampler: InterpolatedDensity = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        p = self.grid.check(np.asarray(self.p), "p")
+        object.__setattr__(self, "p", p)
+        object.__setattr__(self, "_sampler", InterpolatedDensity(self.grid, p))
+
+    def sample(self, rng: np.random.Generator, n: int) -> Sample:
+        """Draw n points: ξ of shape (n, 2) and α of shape (n,)."""
+        return self._sampler(rng, n)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return a description; the density itself is not in it."""
+        return {"kind": "density", "grid": self.grid.to_dict()}
+
+
+def _checked_point(name: str, point: Any) -> tuple[float, float]:
+    if np.shape(point) != (2,):
+        raise ValueError(f"`{name}` must be two numbers, got {point!r}.")
+    first, second = (check_finite(name, component) for component in point)
+    return first, second

@@ -1,0 +1,300 @@
+"""An ensemble of paths: positions, estimates, single paths, and how it goes on."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fpsolve._checks import check_integer
+from fpsolve.grids import PhaseSpaceGrid
+from fpsolve.models import LayDownModel
+from fpsolve.paths.averages import Observable, observed, time_averages
+from fpsolve.paths.ensemble import Ensemble, angle_of
+from fpsolve.paths.histogram import Histogram, count_paths, wrapped
+from fpsolve.paths.moments import Moments
+from fpsolve.paths.trajectory import Trajectory, trajectory
+
+if TYPE_CHECKING:
+    import xarray
+
+__all__ = ["Paths"]
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Paths:
+    """Paths (ξ, α) of the basic model (6) at the saved arclengths.
+
+    Everything is dimensionless, angles are in radians. Estimates come with the
+    standard errors of independent paths; the bias of the step comes in addition.
+
+    Attributes
+    ----------
+    ensemble : Ensemble
+        Model, number of paths, steps, seed, method and law of the start.
+    s : ndarray, shape (n_saved,)
+    states : ndarray, shape (n_saved, 5, n_paths)
+        ξ1, ξ2, cos α, sin α and full turns; (n_saved, 5, 0) when not kept.
+    sums : ndarray, shape (n_saved, n_sums)
+        Sums over paths for the moments.
+    counts : ndarray of int64, shape (n_saved, n1, n2, n_alpha)
+        Histograms collected while sampling.
+    outside : ndarray of int64, shape (n_saved,)
+        Paths outside of the ξ box of the histograms.
+    start, end : ndarray, shape (5, n_paths)
+        States at the beginning and at the end.
+    status : str
+        "finished" or "interrupted".
+    message : str
+    provenance : dict
+        Versions, date, times, number of path-steps.
+    """
+
+    ensemble: Ensemble
+    s: Array
+    states: Array
+    sums: Array
+    counts: NDArray[np.int64]
+    outside: NDArray[np.int64]
+    start: Array
+    end: Array
+    status: str = "finished"
+    message: str = ""
+    provenance: dict[str, Any] = field(default_factory=dict)
+
+    @property
+    def model(self) -> LayDownModel:
+        """The model that was sampled."""
+        return self.ensemble.model
+
+    @property
+    def n_paths(self) -> int:
+        """Number of paths."""
+        return self.ensemble.n_paths
+
+    @property
+    def ds(self) -> float:
+        """Step."""
+        return self.ensemble.schedule.ds
+
+    @property
+    def s_start(self) -> float:
+        """Arclength at which step 0 begins."""
+        return self.ensemble.schedule.start
+
+    @property
+    def seed(self) -> int:
+        """The seed: with model, method and step it determines every path."""
+        return self.ensemble.seed
+
+    @property
+    def method(self) -> str:
+        """Name of the integrator."""
+        return self.ensemble.method
+
+    @property
+    def initial(self) -> Any:
+        """Law of the start."""
+        return self.ensemble.law
+
+    @property
+    def kept(self) -> bool:
+        """Whether positions were kept."""
+        return self.ensemble.keep
+
+    def __repr__(self) -> str:
+        s = ", ".join(f"{value:g}" for value in self.s[:4])
+        more = ", …" if len(self.s) > 4 else ""
+        return (
+            f"Paths({self.n_paths} paths, {self.method}, ds = {self.ds:g}, "
+            f"seed = {self.seed}, saved at s = {s}{more}, {self.status})"
+        )
+
+    @property
+    def xi(self) -> Array:
+        """Deviations ξ; shape (n_saved, n_paths, 2)."""
+        return self._kept(self.states)[:, :2].transpose(0, 2, 1)
+
+    @cached_property
+    def alpha(self) -> Array:
+        """Angles α, continuous along every path; shape (n_saved, n_paths)."""
+        return angle_of(self._kept(self.states))
+
+    @property
+    def wrapped_alpha(self) -> Array:
+        """Angles α in [0, 2π); shape (n_saved, n_paths)."""
+        return wrapped(self.alpha)
+
+    @property
+    def eta(self) -> Array:
+        """Fibres on the belt, η = ξ + γ(s); shape (n_saved, n_paths, 2)."""
+        position = np.stack(self.model.curve.position(self.s), axis=-1)
+        return self.xi + position[:, None, :]
+
+    def moments(self) -> Moments:
+        """Mean, covariance and mean direction at every saved s, with standard errors.
+
+        They were collected while sampling, and are there whether or not positions are.
+        """
+        return Moments(self.s, self.n_paths, self.sums)
+
+    def expectation(self, f: Observable) -> tuple[Array, Array]:
+        """E f(ξ1, ξ2, α) at every saved s and its standard error; (n_saved,) each."""
+        xi1, xi2 = self._kept(self.states)[:, 0], self.states[:, 1]
+        values = observed(f, xi1, xi2, self.alpha)
+        deviation = values.std(axis=1, ddof=1) if self.n_paths > 1 else np.nan
+        error = np.broadcast_to(deviation / np.sqrt(self.n_paths), self.s.shape)
+        return values.mean(axis=1), np.array(error)
+
+    def histogram(
+        self, grid: PhaseSpaceGrid | None = None, s: float | None = None
+    ) -> Histogram:
+        """Numbers of paths in the cells of a grid at a saved s.
+
+        Parameters
+        ----------
+        grid : PhaseSpaceGrid, optional
+            By default the one whose histograms were collected while sampling.
+        s : float, optional
+            By default the last saved one.
+
+        Raises
+        ------
+        ValueError
+            If nothing was saved at s, or if there is neither a collected histogram
+            nor a position.
+        """
+        at = self._index(s)
+        known = self.ensemble.grid
+        if known is not None and (grid is None or grid == known):
+            counts, outside, grid = self.counts[at], int(self.outside[at]), known
+        elif grid is None:
+            raise ValueError(
+                "`grid` must be given, got None; no histogram was collected while "
+                "sampling. Pass a grid here, or as `histogram` to sample_paths."
+            )
+        else:
+            state = self._kept(self.states)[at]
+            counts, outside = count_paths(grid, state[0], state[1], angle_of(state))
+        return Histogram(grid, float(self.s[at]), counts, outside, self.n_paths)
+
+    def marginal(
+        self, which: str, s: float | None = None, grid: PhaseSpaceGrid | None = None
+    ) -> Array:
+        """Density of "xi", "alpha", "xi1" or "xi2", averaged over cells of a grid."""
+        density: Array = self.histogram(grid, s).marginal(which)
+        return density
+
+    def time_averages(self, f: Observable | Sequence[Observable]) -> Array:
+        """(1/s)∫ f(ξ, α) ds along every path, from its start to every saved s.
+
+        The paths are run again, the same ones, and every step counts (trapezoidal
+        rule). Positions need not have been kept.
+
+        Parameters
+        ----------
+        f : callable or sequence of callables
+            ``f(xi1, xi2, alpha)`` elementwise on arrays of one shape.
+
+        Returns
+        -------
+        ndarray, shape (n_saved, n_paths)
+            With a leading axis for a sequence. NaN at the start itself, where there is
+            nothing to average.
+        """
+        if callable(f):
+            return time_averages(self, [f])[0]
+        return time_averages(self, list(f))
+
+    def replay(self, k: int, every: int = 1) -> Trajectory:
+        """Path k from its start to the end, at every step or every few.
+
+        It is run again and equals what was saved bitwise.
+
+        Raises
+        ------
+        ValueError
+            If there is no path k.
+        TypeError
+            If `k` or `every` is not an integer.
+        """
+        k = check_integer("k", k, 0)
+        if not k < self.n_paths:
+            raise ValueError(
+                f"`k` must be below the number of paths {self.n_paths}, got {k}."
+            )
+        return trajectory(self, k, check_integer("every", every, 1))
+
+    def continued(
+        self,
+        s_end: float,
+        *,
+        save_at: Iterable[float] | None = None,
+        progress: Any = False,
+    ) -> Paths:
+        """The same paths on to `s_end`, bitwise as if they had never stopped.
+
+        Parameters
+        ----------
+        s_end : float
+            Beyond the end of these paths, by whole steps.
+        save_at : iterable of float, optional
+            Where to save; by default at the end.
+        progress : bool or callable
+
+        Raises
+        ------
+        ValueError
+            If `s_end` is not beyond the end, an arclength to save at is not on the way,
+            or if the states were not kept.
+        """
+        from fpsolve.paths.sampling import go_on
+
+        return go_on(self, s_end, save_at, progress)
+
+    def states_at_start(self, first: int, n: int) -> Array:
+        """States (5, n) at which some of the paths begin."""
+        if self.kept:
+            return self.start[:, first : first + n].copy()
+        return self.ensemble.initial_state(first, n)
+
+    def to_xarray(self) -> xarray.Dataset:
+        """Labelled Dataset of positions, moments and histograms."""
+        from fpsolve.io import to_xarray
+
+        return to_xarray(self)
+
+    def save(self, path: str | Path, engine: str | None = None) -> Path:
+        """Write the paths to netCDF, or to zarr for a path that ends in .zarr."""
+        from fpsolve.io import save
+
+        return save(self, path, engine=engine)
+
+    def _kept(self, array: Array) -> Array:
+        if not self.kept:
+            raise ValueError(
+                "positions must have been kept for this, got paths sampled with "
+                "keep=False; moments and collected histograms are there."
+            )
+        return array
+
+    def _index(self, s: float | None) -> int:
+        """Index of a saved s."""
+        if s is None and len(self.s):
+            return len(self.s) - 1
+        wanted = np.nan if s is None else float(s)
+        for index, saved in enumerate(self.s):
+            if abs(saved - wanted) <= 1e-9 * max(1.0, abs(wanted)):
+                return index
+        known = ", ".join(f"{value:g}" for value in self.s) or "none"
+        raise ValueError(
+            f"`s` must be one of the saved values {known}, got {wanted:g}; add it to "
+            "`save_at`."
+        )

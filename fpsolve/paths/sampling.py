@@ -1,0 +1,342 @@
+"""Sample the stochastic differential equation (6)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fpsolve._checks import check_integer
+from fpsolve.errors import GridMismatchError, NonFinitePathError, RunInterrupted
+from fpsolve.grids import PhaseSpaceGrid
+from fpsolve.memory import OVERHEAD, check_memory
+from fpsolve.models import LayDownModel
+from fpsolve.paths.batch import Batch, BatchRun, batches_of, run_batch
+from fpsolve.paths.ensemble import Ensemble, GivenStart
+from fpsolve.paths.integrators import METHODS
+from fpsolve.paths.laws import PointLaw
+from fpsolve.paths.randomness import seed_number
+from fpsolve.paths.result import Paths
+from fpsolve.progress import ProgressCallback, reporting
+from fpsolve.provenance import Stopwatch, announced_compilation
+from fpsolve.schedule import Schedule, make_schedule
+
+__all__ = ["go_on", "sample_paths"]
+
+Array = NDArray[np.float64]
+
+
+def sample_paths(
+    model: LayDownModel,
+    n_paths: int,
+    s_end: float,
+    ds: float,
+    *,
+    seed: int | np.random.SeedSequence | None = None,
+    rng: Any = None,
+    initial: Any = None,
+    save_at: Iterable[float] | None = None,
+    s_start: float = 0.0,
+    method: str = "splitting",
+    histogram: PhaseSpaceGrid | None = None,
+    keep: bool = True,
+    client: Any = None,
+    progress: bool | ProgressCallback = False,
+    memory_limit: int | None = None,
+) -> Paths:
+    """Paths of dξ = τ(α) ds - dγ, dα = -∇B(ξ)·τ⊥(α) ds + A dW.
+
+    The splitting T½ R½ D R½ T½ is weakly of order 2; it is exact in the angle for
+    frozen ξ, and safe for A = 0, for any A √ds, and through the kink of B = ‖ξ‖. Path
+    k depends on (seed, k, ds) alone: it is bitwise the same for any number of paths,
+    of threads and of workers, and wherever it is saved.
+
+    Parameters
+    ----------
+    model : LayDownModel
+        Any potential and any curve. A potential of the user's own is evaluated by its
+        Python functions, the others by compiled code.
+    n_paths : int
+    s_end : float
+    ds : float
+        Step; must divide the span.
+    seed : int or SeedSequence
+    rng : Generator, int or SeedSequence
+        Instead of `seed`; a generator gives one number, the seed that is recorded.
+    initial : law, or (xi, alpha), optional
+        A law from `fpsolve.paths` (or any object with ``sample(rng, n)``), or arrays of
+        shape (n_paths, 2) and (n_paths,), or one point for all. By default ξ = 0, the
+        point below the nozzle, and a uniform angle.
+    save_at : iterable of float, optional
+        Where to keep the paths; by default at the end.
+    s_start : float
+        Arclength at the start; it matters for curves that turn or swing.
+    method : {"splitting", "euler_maruyama", "heun"}
+    histogram : PhaseSpaceGrid, optional
+        Count the paths in the cells of this grid at every saved s, while sampling.
+    keep : bool
+        False keeps no positions: memory then does not depend on `n_paths`.
+    client : optional
+        Where to compute: a dask.distributed client, or an executor of
+        concurrent.futures; anything whose ``submit(f, *args)`` gives a future.
+    progress : bool or callable
+        Show a bar, or call with (path-steps done, path-steps in all, s).
+    memory_limit : int, optional
+        Bytes the result may take; by default what is available.
+
+    Returns
+    -------
+    Paths
+
+    Raises
+    ------
+    ValueError, TypeError
+        Bad arguments.
+    MemoryLimitError
+        If the result would not fit into memory.
+    NonFinitePathError
+        If the gradient is not finite where a path comes.
+    RunInterrupted
+        On Ctrl-C, with the finished part of the paths as `.solution`.
+
+    References
+    ----------
+    [KMW09]_, section 3.1, equation (6).
+    """
+    n_paths = check_integer("n_paths", n_paths, 1)
+    check_method(method)
+    check_histogram(histogram)
+    schedule = stepwise(s_start, s_end, ds, save_at)
+    ensemble = Ensemble(
+        model=model,
+        n_paths=n_paths,
+        schedule=schedule,
+        seed=seed_number(seed, rng),
+        method=method,
+        law=law_of(initial, n_paths),
+        keep=bool(keep),
+        grid=histogram,
+    )
+    remedy = "pass keep=False to keep no positions, save less often"
+    check_memory(required_memory(ensemble), memory_limit, remedy)
+    return completed(ensemble, None, client, progress)
+
+
+def go_on(
+    paths: Paths, s_end: float, save_at: Iterable[float] | None, progress: Any
+) -> Paths:
+    """The same paths from their end on to `s_end`."""
+    if not paths.kept:
+        raise ValueError(
+            "the states must have been kept to go on, got paths sampled with "
+            "keep=False; sample with keep=True."
+        )
+    before = paths.ensemble.schedule
+    reached = before.s(before.n_steps)
+    if not s_end > reached:
+        raise ValueError(
+            f"`s_end` must be beyond the end {reached:g} of the paths, got {s_end:g}."
+        )
+    schedule = stepwise(before.start, s_end, before.ds, save_at)
+    if schedule.saves and schedule.saves[0] <= before.n_steps:
+        raise ValueError(
+            f"`save_at` must lie beyond the end {reached:g} of the paths, got "
+            f"{schedule.s(schedule.saves[0]):g}."
+        )
+    ensemble = replace(
+        paths.ensemble, schedule=schedule, first_step=before.n_steps, grid=None
+    )
+    return completed(ensemble, paths.end, None, progress)
+
+
+def completed(
+    ensemble: Ensemble, states: Array | None, client: Any, progress: Any
+) -> Paths:
+    """Run all batches, here or on a client, and gather them."""
+    watch = Stopwatch()
+    n_steps = ensemble.schedule.n_steps - ensemble.first_step
+    n_total = ensemble.n_paths * n_steps
+    with reporting(progress) as report, announced_compilation(bool(progress)):
+        meter = Meter(report, n_total, ensemble.schedule)
+        batches: list[Batch] = []
+        with keeping_what_is_done(ensemble, batches, watch):
+            if client is None:
+                run_here(ensemble, states, meter, batches)
+            else:
+                run_elsewhere(ensemble, states, meter, batches, client)
+    return gathered(ensemble, batches, watch.provenance(n_total))
+
+
+class Meter:
+    """Path-steps done, told to whoever wants to know."""
+
+    def __init__(
+        self, report: ProgressCallback, n_total: int, schedule: Schedule
+    ) -> None:
+        self.report, self.n_total, self.n_done = report, n_total, 0
+        self.s_end = schedule.s(schedule.n_steps)
+
+    def __call__(self, n_path_steps: int, s: float | None = None) -> None:
+        """Count on, and report."""
+        self.n_done += n_path_steps
+        self.report(self.n_done, self.n_total, self.s_end if s is None else s)
+
+
+def run_here(
+    ensemble: Ensemble, states: Array | None, meter: Meter, batches: list[Batch]
+) -> None:
+    """One batch after the other; an interrupt leaves what the first one reached."""
+    for first, n in batches_of(ensemble.n_paths):
+        run = BatchRun(ensemble, first, n, part(states, first, n))
+        try:
+            run.complete(meter)
+        except KeyboardInterrupt:
+            if not batches:
+                batches.append(run.result())
+            raise
+        batches.append(run.result())
+
+
+def run_elsewhere(
+    ensemble: Ensemble,
+    states: Array | None,
+    meter: Meter,
+    batches: list[Batch],
+    client: Any,
+) -> None:
+    """All batches on a client; they come back in their order."""
+    if not hasattr(client, "submit"):
+        raise TypeError(
+            f"`client` must have a method submit(f, *args), got {client!r}; pass a "
+            "dask.distributed client or an executor."
+        )
+    futures = []
+    for first, n in batches_of(ensemble.n_paths):
+        # Given points travel with their own batch only.
+        given = isinstance(ensemble.law, GivenStart) or states is not None
+        state = part(states, first, n) if given else None
+        if given and state is None:
+            state = ensemble.initial_state(first, n)
+        alone = replace(ensemble, law=None) if given else ensemble
+        futures.append((n, client.submit(run_batch, alone, first, n, state)))
+    n_steps = ensemble.schedule.n_steps - ensemble.first_step
+    for n, future in futures:
+        batches.append(future.result())
+        meter(n * n_steps)
+
+
+def part(states: Array | None, first: int, n: int) -> Array | None:
+    """States of some of the paths."""
+    return None if states is None else states[:, first : first + n]
+
+
+@contextmanager
+def keeping_what_is_done(
+    ensemble: Ensemble, batches: list[Batch], watch: Stopwatch
+) -> Iterator[None]:
+    """Attach the finished batches to what stops the others."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        message = "stopped by the user"
+        done = finished_part(ensemble, batches, watch, message) if batches else None
+        raise RunInterrupted(done) from None
+    except NonFinitePathError as error:
+        if batches:
+            error.solution = finished_part(ensemble, batches, watch, str(error))
+        raise
+
+
+def finished_part(
+    ensemble: Ensemble, batches: list[Batch], watch: Stopwatch, message: str
+) -> Paths:
+    """The paths of the batches that are there."""
+    n_paths = sum(batch.n for batch in batches)
+    provenance = watch.provenance(n_paths * ensemble.schedule.n_steps)
+    fewer = replace(ensemble, n_paths=n_paths)
+    return replace(
+        gathered(fewer, batches, provenance), status="interrupted", message=message
+    )
+
+
+def gathered(
+    ensemble: Ensemble, batches: list[Batch], provenance: dict[str, Any]
+) -> Paths:
+    """The paths of all batches as one result."""
+    schedule = ensemble.schedule
+    n_saved = min((len(batch.sums) for batch in batches), default=0)
+    counts, outside = batches[0].counts[:0], batches[0].outside[:0]
+    if ensemble.grid is not None:
+        counts = np.sum([batch.counts for batch in batches], axis=0)
+        outside = np.sum([batch.outside for batch in batches], axis=0)
+    return Paths(
+        ensemble=ensemble,
+        s=np.array([schedule.s(step) for step in schedule.saves[:n_saved]]),
+        states=np.concatenate([batch.states for batch in batches], axis=2),
+        sums=np.sum([batch.sums for batch in batches], axis=0),
+        counts=counts,
+        outside=outside,
+        start=np.concatenate([batch.start for batch in batches], axis=1),
+        end=np.concatenate([batch.end for batch in batches], axis=1),
+        provenance=provenance,
+    )
+
+
+def stepwise(
+    s_start: float, s_end: float, ds: float, save_at: Iterable[float] | None
+) -> Schedule:
+    """Steps of exactly ds, whatever the end: a path must not depend on it."""
+    schedule = make_schedule((s_start, s_end), ds, save_at, record_every=1)
+    return replace(schedule, ds=float(ds), records=())
+
+
+def check_method(method: str) -> None:
+    """Raise ValueError unless the method is known."""
+    if method not in METHODS:
+        known = ", ".join(repr(name) for name in METHODS)
+        raise ValueError(f"`method` must be one of {known}, got {method!r}.")
+
+
+def check_histogram(grid: Any) -> None:
+    """Raise TypeError unless it is a grid or nothing."""
+    if not (grid is None or isinstance(grid, PhaseSpaceGrid)):
+        raise TypeError(f"`histogram` must be a PhaseSpaceGrid, got {grid!r}.")
+
+
+def law_of(initial: Any, n_paths: int) -> Any:
+    """The law of the start, from any of the ways to give it."""
+    if initial is None:
+        return PointLaw()
+    if hasattr(initial, "sample"):
+        return initial
+    if not (isinstance(initial, tuple | list) and len(initial) == 2):
+        raise TypeError(
+            "`initial` must be a law with a method sample(rng, n), or a pair "
+            f"(xi, alpha), got {initial!r}."
+        )
+    xi, alpha = (np.asarray(points, dtype=np.float64) for points in initial)
+    if xi.shape not in ((2,), (n_paths, 2)):
+        raise GridMismatchError((n_paths, 2), xi.shape, "initial xi")
+    if alpha.shape not in ((), (n_paths,)):
+        raise GridMismatchError((n_paths,), alpha.shape, "initial alpha")
+    points = np.broadcast_to(xi, (n_paths, 2)), np.broadcast_to(alpha, (n_paths,))
+    for name, values in zip(("xi", "alpha"), points, strict=True):
+        if not np.isfinite(values).all():
+            index = np.argwhere(~np.isfinite(values))[0]
+            raise ValueError(
+                f"`initial` must be finite, got {values[tuple(index)]:g} in {name} of "
+                f"path {index[0]}."
+            )
+    return GivenStart(*points)
+
+
+def required_memory(ensemble: Ensemble) -> int:
+    """Bytes of the result: states at every saved s and both ends, and histograms."""
+    n_saved = len(ensemble.schedule.saves)
+    kept = 5 * 8 * ensemble.n_paths * (n_saved + 2) if ensemble.keep else 0
+    counted = 0 if ensemble.grid is None else ensemble.grid.nbytes * (n_saved + 2)
+    return kept + counted + OVERHEAD

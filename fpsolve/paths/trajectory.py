@@ -1,0 +1,81 @@
+"""One path at every step."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fpsolve._kernels.paths import N_STATE
+from fpsolve.curves.curve import Curve
+from fpsolve.paths.ensemble import angle_of
+
+if TYPE_CHECKING:
+    from fpsolve.paths.result import Paths
+
+__all__ = ["Trajectory", "traced", "trajectory"]
+
+Array = NDArray[np.float64]
+
+# Steps whose states are held at a time.
+LEG = 512
+
+
+@dataclass(frozen=True, eq=False)
+class Trajectory:
+    """One path, point by point.
+
+    Attributes
+    ----------
+    s : ndarray, shape (n,)
+    xi : ndarray, shape (n, 2)
+    alpha : ndarray, shape (n,)
+        Continuous along the path.
+    curve : Curve
+    """
+
+    s: Array
+    xi: Array = field(repr=False)
+    alpha: Array = field(repr=False)
+    curve: Curve
+
+    @property
+    def eta(self) -> Array:
+        """The fibre on the belt, η = ξ + γ(s); shape (n, 2)."""
+        return self.xi + np.stack(self.curve.position(self.s), axis=-1)
+
+
+def traced(paths: Paths, first: int, n: int) -> Iterator[tuple[int, Array]]:
+    """Number of the first step and states (n_steps, 5, n) of some paths, leg by leg.
+
+    The first leg is the start alone.
+    """
+    ensemble, state = paths.ensemble, paths.states_at_start(first, n)
+    step, end = ensemble.first_step, ensemble.schedule.n_steps
+    yield step, state[None].copy()
+    while step < end:
+        n_steps = min(LEG, end - step)
+        trace = np.empty((n_steps, N_STATE, n))
+        ensemble.integrator.advance(state, first, step, n_steps, trace)
+        yield step + 1, trace
+        step += n_steps
+
+
+def trajectory(paths: Paths, k: int, every: int) -> Trajectory:
+    """Path k at its start and after every few steps, its last one included."""
+    schedule = paths.ensemble.schedule
+    first = paths.ensemble.first_step
+    states = np.concatenate([states for _, states in traced(paths, k, 1)])
+    steps = np.arange(first, schedule.n_steps + 1)
+    chosen = (steps - first) % every == 0
+    chosen[-1] = True
+    states = states[chosen]
+    return Trajectory(
+        s=schedule.start + steps[chosen] * schedule.ds,
+        xi=states[:, :2, 0].copy(),
+        alpha=angle_of(states)[:, 0],
+        curve=paths.model.curve,
+    )

@@ -1,0 +1,47 @@
+"""Questions that one call answers: do density and paths agree, do averages converge.
+
+`cross_check` solves a model for its density, samples its paths and says whether both
+agree; `compare` does so for results that exist already. `ergodic_averages` measures
+how time averages converge to those of the equilibrium. The names are loaded on first
+use.
+"""
+
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from fpsolve.studies.agreement import AgreementTest, CrossCheck
+    from fpsolve.studies.comparison import compare, cross_check
+    from fpsolve.studies.ergodicity import ErgodicFit, ergodic_averages
+
+__all__ = [
+    "AgreementTest",
+    "CrossCheck",
+    "ErgodicFit",
+    "compare",
+    "cross_check",
+    "ergodic_averages",
+]
+
+_HOME = {
+    "AgreementTest": "agreement",
+    "CrossCheck": "agreement",
+    "compare": "comparison",
+    "cross_check": "comparison",
+    "ErgodicFit": "ergodicity",
+    "ergodic_averages": "ergodicity",
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name in _HOME:
+        value = getattr(importlib.import_module(f"{__name__}.{_HOME[name]}"), name)
+        globals()[name] = value
+        return value
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)
