@@ -20,9 +20,9 @@ EXAMPLES = [
         "or choose a scheme that is stable for this noise.",
     ),
     (
-        errors.NonFinitePathError(17, 0.5, (2.0, 3.0), (float("nan"), 1.0)),
+        errors.NonFinitePathError(17, 0.5, (2.0, 3.0), (float("inf"), 1.0)),
         "path 17 cannot go on at s = 0.5: the gradient of the potential at xi = (2, 3) "
-        "is (nan, 1); define it wherever a path may come, or start the paths closer to "
+        "is (inf, 1); define it wherever a path may come, or start the paths closer to "
         "the origin.",
     ),
     (

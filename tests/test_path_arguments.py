@@ -1,5 +1,7 @@
 """What `sample_paths` and `Paths` say of arguments that are wrong."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -187,3 +189,17 @@ def test_functions_along_paths_must_be_elementwise_and_finite(model):
         ValueError, match=r"`f` must be finite on the paths, got inf at"
     ):
         paths.expectation(lambda xi1, xi2, alpha: np.full(xi1.shape, np.inf))
+
+
+def test_paths_of_an_unknown_model_cannot_go_on(model):
+    paths = fp.sample_paths(model, 10, 1.0, 0.5, seed=1)
+    unknown = replace(paths, ensemble=replace(paths.ensemble, model=None))
+    assert np.array_equal(unknown.xi, paths.xi)
+    for question in (
+        lambda: unknown.replay(1),
+        lambda: unknown.continued(2.0),
+        lambda: unknown.time_averages(lambda xi1, xi2, alpha: xi1),
+        lambda: unknown.eta,
+    ):
+        with pytest.raises(ValueError, match="the model must be known for this, got"):
+            question()

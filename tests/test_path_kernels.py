@@ -73,6 +73,7 @@ def cases():
         "fill_normals": [(5, 3, KEY, np.zeros((4, n)))],
         "kick_paths": [(0.1, np.array([1.0, -9.0, 0.0]), np.ones((2, n)), state)],
         "rotate_paths": [(np.array([1.0, -9.0, 40.0]), state)],
+        "sum_powers": [(random_state(70), np.zeros((2, 19)))],
     }  # fmt: skip
 
 
@@ -97,7 +98,7 @@ def called(function, arguments):
 def test_every_kernel_of_the_sampler_has_a_case():
     assert CASES.keys() == KERNELS.keys()
     assert set(PARALLEL) == {
-        "advance_paths", "fill_normals", "kick_paths", "rotate_paths",
+        "advance_paths", "fill_normals", "kick_paths", "rotate_paths", "sum_powers",
     }  # fmt: skip
 
 

@@ -354,6 +354,12 @@ def test_an_interrupt_in_the_first_batch_leaves_what_it_reached(model):
     partial = caught.value.solution
     assert partial.s.tolist() == pytest.approx([20.0])
     assert partial.n_paths == 50
+    # It goes on from where it stopped, which is not where anything was saved.
+    reached = partial.ensemble.schedule.n_steps
+    assert 500 < reached < 2000
+    whole = fp.sample_paths(model, 50, 200.0, 0.1, seed=3)
+    assert np.array_equal(partial.continued(200.0).states, whole.states)
+    assert np.array_equal(partial.replay(3).xi, whole.replay(3).xi[: reached + 1])
 
 
 def test_a_bad_gradient_names_the_path_and_the_place_and_keeps_finished_batches(

@@ -21,6 +21,8 @@ FORCE1, FORCE2 = 10 * LANES, 11 * LANES
 KEPT1, KEPT2, KEPT3, KEPT4, KEPT5 = (LANES * row for row in range(12, 17))
 N_ROWS = 17
 N_STATE = 5
+# Powers 0 to 4 of each component of ξ, and their products of at most that degree.
+N_POWERS, N_PRODUCTS = 5, 15
 
 FREE, QUADRATIC, LINEAR, EVEN_POWER, POWER = range(5)
 SPLITTING, EULER_MARUYAMA, HEUN = range(3)
@@ -447,3 +449,34 @@ def rotate_paths(angles, state):
             w[ANGLE + i] = angles[start + i]
         rotate_block(w)
         store_block(w, start, n_lanes, state)
+
+
+@njit(cache=True, parallel=True, fastmath={"contract"}, error_model="numpy")
+def sum_powers(state, sums):
+    """Sums over blocks of paths of the powers ξ1ⁱ ξ2ʲ, i + j <= 4, and of cos, sin.
+
+    The powers come in the order of i + j and then of falling i; after them cos α,
+    sin α, cos² α and sin² α.
+
+    Parameters
+    ----------
+    state : ndarray, shape (5, n_paths)
+    sums : ndarray, shape (n_blocks, 19)
+        Zeros before; n_blocks times `LANES` is at least n_paths.
+    """
+    for block in prange(sums.shape[0]):
+        start = block * LANES
+        for i in range(start, min(start + LANES, state.shape[1])):
+            power1 = 1.0
+            for power in range(N_POWERS):
+                entry = power1
+                for other in range(N_POWERS - power):
+                    total = power + other
+                    sums[block, total * (total + 1) // 2 + other] += entry
+                    entry *= state[1, i]
+                power1 *= state[0, i]
+            cosine, sine = state[2, i], state[3, i]
+            sums[block, N_PRODUCTS] += cosine
+            sums[block, N_PRODUCTS + 1] += sine
+            sums[block, N_PRODUCTS + 2] += cosine * cosine
+            sums[block, N_PRODUCTS + 3] += sine * sine

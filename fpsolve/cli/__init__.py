@@ -1,4 +1,4 @@
-"""The command line: `fpsolve run`, `fpsolve plot` and `fpsolve info`.
+"""The command line: `fpsolve run`, `paths`, `check`, `plot` and `info`.
 
 Whatever takes long to import is imported by the command that needs it, so that
 ``fpsolve --help`` answers at once.
@@ -10,7 +10,9 @@ from typing import Annotated
 
 import typer
 
+from fpsolve.cli.check import check
 from fpsolve.cli.info import info
+from fpsolve.cli.paths import paths
 from fpsolve.cli.plot import plot
 from fpsolve.cli.run import run
 
@@ -26,6 +28,8 @@ app = typer.Typer(
     rich_markup_mode=None,
 )
 app.command(epilog="Example: fpsolve run --example spunbond --out results")(run)
+app.command(epilog="Example: fpsolve paths --n-paths 10000 --out results")(paths)
+app.command(epilog="Example: fpsolve check --n-paths 100000 --out results")(check)
 app.command(epilog="Example: fpsolve plot results/laydown.nc --movie")(plot)
 app.command(epilog="Example: fpsolve info")(info)
 

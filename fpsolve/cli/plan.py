@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from fpsolve.config import Problem, RunConfig
 
-__all__ = ["print_plan"]
+__all__ = ["print_plan", "units_text", "with_options"]
 
 
 def print_plan(config: RunConfig, problem: Problem, out: Path) -> None:
@@ -25,18 +25,19 @@ def print_plan(config: RunConfig, problem: Problem, out: Path) -> None:
 def _lines(config: RunConfig, problem: Problem, out: Path) -> list[tuple[str, str]]:
     lines = [("equation", problem.model.equation)]
     if config.process is not None:
-        lines.append(("units", _units(config.process.make())))
+        lines.append(("units", units_text(config.process.make())))
     lines += [
         ("grid", _grid(problem)),
-        ("start", _with_options(config.initial)),
-        ("scheme", f"{_with_options(config.scheme)}, order {problem.scheme.order}"),
+        ("start", with_options(config.initial)),
+        ("scheme", f"{with_options(config.scheme)}, order {problem.scheme.order}"),
         ("run", _steps(problem.arguments)),
         ("result", str(out / config.output.file_name)),
     ]
     return lines
 
 
-def _units(process: Any) -> str:
+def units_text(process: Any) -> str:
+    """Say what one unit of length means in SI units."""
     return (
         f"ξ and s in units of {1e3 * process.length:g} mm, laid down in "
         f"{1e3 * process.time:g} ms; A = {process.noise:g} m^-1/2"
@@ -65,7 +66,8 @@ def _source(value: Any) -> str:
     return "from the configuration" if reason is None else f"suggested: {reason}"
 
 
-def _with_options(section: Any) -> str:
+def with_options(section: Any) -> str:
+    """Write a section as a call."""
     options = section.model_dump(exclude_none=True)
     kind = options.pop("kind")
     return f"{kind}({', '.join(f'{name}={value}' for name, value in options.items())})"

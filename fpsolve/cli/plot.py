@@ -13,7 +13,9 @@ __all__ = ["plot"]
 
 File = Annotated[
     Path,
-    typer.Argument(metavar="FILE", help="Result of `fpsolve run` or of Solution.save."),
+    typer.Argument(
+        metavar="FILE", help="Result of `fpsolve run`, `fpsolve paths`, or of `save`."
+    ),
 ]
 Out = Annotated[
     Path | None,
@@ -22,7 +24,9 @@ Out = Annotated[
         show_default=False,
     ),
 ]
-Movie = Annotated[bool, typer.Option("--movie", help="Also make a movie (GIF).")]
+Movie = Annotated[
+    bool, typer.Option("--movie", help="Also make a movie (GIF) of a density.")
+]
 FramesPerSecond = Annotated[float, typer.Option(help="Frames per second of the movie.")]
 
 
@@ -33,11 +37,17 @@ def plot(
     with reported_errors():
         from fpsolve import plotting
         from fpsolve.io import load
+        from fpsolve.solution import Solution
 
-        solution = load(file)
+        result = load(file)
+        if movie and not isinstance(result, Solution):
+            raise ValueError(
+                f"`--movie` must be given with the result of `fpsolve run`, got paths "
+                f"in `{file}`; leave it out."
+            )
         folder = file.parent if out is None else out
-        for path in plotting.save_figures(solution, folder, prefix=f"{file.stem}-"):
+        for path in plotting.save_figures(result, folder, prefix=f"{file.stem}-"):
             typer.echo(path)
-        if movie:
+        if movie and isinstance(result, Solution):
             path = folder / f"{file.stem}.gif"
-            typer.echo(plotting.movie(solution, path, fps=fps))
+            typer.echo(plotting.movie(result, path, fps=fps))

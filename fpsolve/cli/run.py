@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from fpsolve.config import Problem, RunConfig
     from fpsolve.solution import Solution
 
-__all__ = ["run"]
+__all__ = ["read_config", "run", "set_threads"]
 
 Config = Annotated[
     Path | None,
@@ -53,15 +53,16 @@ def run(
     stops the run and writes what was recorded until then.
     """
     with reported_errors():
-        chosen = _read(config, example)
+        chosen = read_config(config, example)
         if no_figures:
             output = chosen.output.model_copy(update={"figures": False})
             chosen = chosen.model_copy(update={"output": output})
-        _set_threads(threads)
+        set_threads(threads)
         _solve(chosen, out)
 
 
-def _read(config: Path | None, example: str | None) -> RunConfig:
+def read_config(config: Path | None, example: str | None) -> RunConfig:
+    """Return what a file or a packaged example describes."""
     from fpsolve.config import EXAMPLES, example_path, load_config
 
     if config is not None and example is not None:
@@ -74,7 +75,8 @@ def _read(config: Path | None, example: str | None) -> RunConfig:
     return load_config(example_path(EXAMPLES[0] if example is None else example))
 
 
-def _set_threads(threads: int | None) -> None:
+def set_threads(threads: int | None) -> None:
+    """Limit the kernels to that many threads."""
     if threads is None:
         return
     import numba

@@ -7,14 +7,24 @@ from typing import Any
 
 from pydantic import ValidationError
 
+from fpsolve.config.description import Description
 from fpsolve.config.names import suggestion
+from fpsolve.config.paths import PathsConfig
 from fpsolve.config.run import RunConfig
 from fpsolve.config.sections import Section, kinds_of
 
 __all__ = ["complaints"]
 
+# The command that reads a kind of configuration.
+_COMMANDS: dict[type[Description], str] = {
+    RunConfig: "fpsolve run",
+    PathsConfig: "fpsolve paths",
+}
+# A section of one name is the same in all of them.
 _SECTIONS = {
-    name: kinds_of(field.annotation) for name, field in RunConfig.model_fields.items()
+    name: kinds_of(field.annotation)
+    for config in _COMMANDS
+    for name, field in config.model_fields.items()
 }
 # What TOML calls the types that pydantic speaks of.
 _TYPES = {
@@ -26,19 +36,38 @@ _TYPES = {
 }
 
 
-def complaints(error: ValidationError) -> list[str]:
+def complaints(error: ValidationError, config: type[Description]) -> list[str]:
     """Return a sentence for every key that is wrong, the section named first.
 
-    A value that fits none of several types gives one sentence with all of them.
+    A value that fits none of several types gives one sentence with all of them. A
+    whole configuration of another command gives one sentence that names it.
     """
+    command = _other_command(error, config)
+    if command is not None:
+        return [f"its sections are those of `{command}`; give it to that command."]
     found: dict[tuple[Any, ...], str] = {}
     for entry in error.errors():
-        place, sentence = _place(entry["loc"]), _sentence(entry)
+        place, sentence = _place(entry["loc"]), _sentence(entry, config)
         if place in found and entry["type"] != "extra_forbidden":
             found[place] = _joined(found[place], sentence)
         else:
             found[place] = sentence
     return list(found.values())
+
+
+def _other_command(error: ValidationError, config: type[Description]) -> str | None:
+    """Return the command to which the file belongs, if its sections say so."""
+    unknown = {
+        entry["loc"][0]
+        for entry in error.errors()
+        if entry["type"] == "extra_forbidden"
+    }
+    for other, command in _COMMANDS.items():
+        fields = other.model_fields.items()
+        needed = {name for name, field in fields if field.is_required()}
+        if other is not config and needed <= unknown - config.model_fields.keys():
+            return command
+    return None
 
 
 def _place(location: tuple[int | str, ...]) -> tuple[Any, ...]:
@@ -50,14 +79,14 @@ def _place(location: tuple[int | str, ...]) -> tuple[Any, ...]:
     return (name, kind, rest[0] if rest else None)
 
 
-def _sentence(entry: Mapping[str, Any]) -> str:
+def _sentence(entry: Mapping[str, Any], config: type[Description]) -> str:
     name, kind, key = _place(entry["loc"])
     what = entry["type"]
     if what == "value_error":
         text = str(entry["ctx"]["error"])
         return text if name is None else f"section [{name}]: {text}"
     if key is None and what in ("extra_forbidden", "missing"):
-        return _wrong_section(name, what)
+        return _wrong_section(name, what, config)
     if what.startswith("union_tag"):
         return _wrong_kind(name, entry)
     if what == "extra_forbidden":
@@ -67,11 +96,14 @@ def _sentence(entry: Mapping[str, Any]) -> str:
     return _wrong_value(name, key, entry)
 
 
-def _wrong_section(name: str, what: str) -> str:
+def _wrong_section(name: str, what: str, config: type[Description]) -> str:
     if what == "missing":
         return f"section [{name}] must be given, got none."
-    near = suggestion(name, _SECTIONS, "[{}]")
-    known = ", ".join(f"[{section}]" for section in _SECTIONS)
+    near = suggestion(name, config.model_fields, "[{}]")
+    for other, command in _COMMANDS.items():
+        if name in other.model_fields:
+            near = f"; it belongs to the configuration of `{command}`."
+    known = ", ".join(f"[{section}]" for section in config.model_fields)
     return f"unknown section [{name}]{near} Sections are {known}."
 
 

@@ -8,9 +8,11 @@ from pathlib import Path
 from fpsolve.config.names import suggestion
 from fpsolve.errors import ConfigurationError
 
-__all__ = ["EXAMPLES", "example_path"]
+__all__ = ["EXAMPLES", "PATHS_EXAMPLE", "example_path"]
 
+# What `fpsolve run` can solve, and what `fpsolve paths` samples.
 EXAMPLES = ("laydown", "spunbond")
+PATHS_EXAMPLE = "fibres"
 
 
 def example_path(name: str) -> Path:
@@ -18,15 +20,15 @@ def example_path(name: str) -> Path:
 
     Parameters
     ----------
-    name : {"laydown", "spunbond"}
-        B = ‖ξ‖²/2 with A = 1, or a spunbond process in SI units.
+    name : {"laydown", "spunbond", "fibres"}
+        B = ‖ξ‖²/2 with A = 1, a spunbond process in SI units, or paths on a belt.
 
     Raises
     ------
     ConfigurationError
         If there is no such example.
     """
-    if name not in EXAMPLES:
+    if name not in (*EXAMPLES, PATHS_EXAMPLE):
         raise ConfigurationError(
             f"`example` must be one of {', '.join(EXAMPLES)}, got {name!r}"
             f"{suggestion(name, EXAMPLES)}"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import sys
 from typing import TYPE_CHECKING, ClassVar, Literal, TypeAlias
 
 from pydantic import model_validator
@@ -39,6 +40,7 @@ __all__ = [
     "ProcessSection",
     "RunSection",
     "SchemeSection",
+    "SpanSection",
 ]
 
 _Numbers = tuple[float, ...]
@@ -98,25 +100,16 @@ else:
     ProcessSection = section(Process)
 
 
-class RunSection(Section):
-    """How far to run and what to keep; see `fpsolve.solve`.
-
-    `tolerance` is the L1 error at which a grid or a step that is not given aims.
-    """
+class SpanSection(Section):
+    """How far to go from s = 0, in which steps, and where to keep what is found."""
 
     s_end: float
     ds: float | None = None
     save_at: _Numbers | None = None
     save_every: float | None = None
-    record_every: int = 1
-    extrapolate: bool = False
-    tolerance: float = 1e-2
-    mass_tolerance: float | None = None
-    boundary_tolerance: float | None = None
-    negative_tolerance: float | None = None
 
     @model_validator(mode="after")
-    def _check_schedule(self) -> RunSection:
+    def _check_schedule(self) -> SpanSection:
         if self.save_at is not None and self.save_every is not None:
             raise ValueError(
                 "`save_at` and `save_every` must not both be given; remove one of them."
@@ -124,22 +117,43 @@ class RunSection(Section):
         if self.save_every is not None and not 0 < self.save_every < math.inf:
             raise ValueError(f"`save_every` must be positive, got {self.save_every:g}.")
         if self.ds is None:
-            make_schedule((0.0, self.s_end), self.s_end, None, self.record_every)
+            self._make_schedule(self.s_end, None)
         else:
             self.check_schedule(self.ds)
         return self
 
     def check_schedule(self, ds: float) -> None:
         """Raise ValueError unless steps of ds fit the end and the saving points."""
-        make_schedule((0.0, self.s_end), ds, self.saves(), self.record_every)
+        self._make_schedule(ds, self.saves())
 
     def saves(self) -> tuple[float, ...]:
-        """Return the arclengths at which densities are kept."""
+        """Return the arclengths at which the state is kept."""
         if self.save_every is None:
             return (self.s_end,) if self.save_at is None else self.save_at
         n_saves = math.floor(self.s_end / self.save_every + 1e-9) + 1
         saves = {k * self.save_every for k in range(n_saves)} | {self.s_end}
         return tuple(sorted(saves))
+
+    def _make_schedule(self, ds: float, saves: _Numbers | None) -> None:
+        # No step is recorded, however many there are.
+        make_schedule((0.0, self.s_end), ds, saves, record_every=sys.maxsize)
+
+
+class RunSection(SpanSection):
+    """How far to run and what to keep; see `fpsolve.solve`.
+
+    `tolerance` is the L1 error at which a grid or a step that is not given aims.
+    """
+
+    record_every: int = 1
+    extrapolate: bool = False
+    tolerance: float = 1e-2
+    mass_tolerance: float | None = None
+    boundary_tolerance: float | None = None
+    negative_tolerance: float | None = None
+
+    def _make_schedule(self, ds: float, saves: _Numbers | None) -> None:
+        make_schedule((0.0, self.s_end), ds, saves, self.record_every)
 
     def step(self, suggested: float) -> float:
         """Return the largest step, suggested or below, that meets all saving points.

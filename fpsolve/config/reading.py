@@ -5,23 +5,38 @@ from __future__ import annotations
 import os
 import tomllib
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar, overload
 
 from pydantic import ValidationError
 
 from fpsolve.config.complaints import complaints
+from fpsolve.config.description import Description
 from fpsolve.config.run import RunConfig
 from fpsolve.errors import ConfigurationError
 
 __all__ = ["load_config", "read_config"]
 
+T = TypeVar("T", bound=Description)
 
-def load_config(path: str | os.PathLike[str]) -> RunConfig:
+
+@overload
+def load_config(path: str | os.PathLike[str]) -> RunConfig: ...
+
+
+@overload
+def load_config(path: str | os.PathLike[str], kind: type[T]) -> T: ...
+
+
+def load_config(
+    path: str | os.PathLike[str], kind: type[Description] = RunConfig
+) -> Description:
     """Read and check a TOML file that describes a run.
 
     Parameters
     ----------
     path : str or os.PathLike
+    kind : type, optional
+        RunConfig, or PathsConfig for sampled paths.
 
     Raises
     ------
@@ -31,10 +46,23 @@ def load_config(path: str | os.PathLike[str]) -> RunConfig:
         nearest valid name.
     """
     path = Path(path)
-    return read_config(_text(path), f"configuration `{path}`")
+    return read_config(_text(path), f"configuration `{path}`", kind=kind)
 
 
-def read_config(text: str, source: str = "configuration") -> RunConfig:
+@overload
+def read_config(text: str, source: str = "configuration") -> RunConfig: ...
+
+
+@overload
+def read_config(text: str, source: str = ..., *, kind: type[T]) -> T: ...
+
+
+def read_config(
+    text: str,
+    source: str = "configuration",
+    *,
+    kind: type[Description] = RunConfig,
+) -> Description:
     """Check a configuration given as TOML text.
 
     Parameters
@@ -42,6 +70,8 @@ def read_config(text: str, source: str = "configuration") -> RunConfig:
     text : str
     source : str, optional
         What messages call it.
+    kind : type, optional
+        As for `load_config`.
 
     Raises
     ------
@@ -54,9 +84,9 @@ def read_config(text: str, source: str = "configuration") -> RunConfig:
         reason = str(error).rstrip(".")
         raise ConfigurationError(f"{source} is not valid TOML: {reason}.") from None
     try:
-        return RunConfig.model_validate(_with_tuples(tables))
+        return kind.model_validate(_with_tuples(tables))
     except ValidationError as error:
-        lines = "\n".join(complaints(error))
+        lines = "\n".join(complaints(error, kind))
         raise ConfigurationError(f"{source}, {lines}") from None
 
 

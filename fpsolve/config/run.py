@@ -2,29 +2,19 @@
 
 from __future__ import annotations
 
-import json
-from collections.abc import Iterator
-from contextlib import contextmanager
 from typing import Any, NamedTuple, cast
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import model_validator
 
+from fpsolve.config.description import Description, named_section
 from fpsolve.config.kinds import (
-    CurveSection,
     GridSection,
     InitialSection,
-    ModelSection,
     OutputSection,
-    PotentialSection,
-    ProcessSection,
     RunSection,
     SchemeSection,
 )
-from fpsolve.config.sections import Section
-from fpsolve.curves import FixedBelt
-from fpsolve.errors import ConfigurationError
 from fpsolve.grids import PhaseSpaceGrid
 from fpsolve.memory import check_memory, required_memory
 from fpsolve.models import LayDownModel
@@ -46,38 +36,18 @@ class Problem(NamedTuple):
     arguments: dict[str, Any]
 
 
-class RunConfig(Section):
+class RunConfig(Description):
     """A whole run: `potential`, `model` and `curve`, or `process`; then how to solve.
 
     Without a grid or a step they are chosen by `suggest_grid` and `suggest_step` for
     the tolerance of the run; their `reason` says why.
     """
 
-    potential: PotentialSection | None = None
-    model: ModelSection | None = None
-    curve: CurveSection | None = None
-    process: ProcessSection | None = None
     grid: GridSection | None = None
     initial: InitialSection
     scheme: SchemeSection
     run: RunSection
     output: OutputSection = OutputSection()
-
-    @model_validator(mode="after")
-    def _check_model(self) -> RunConfig:
-        parts = {"potential": self.potential, "model": self.model, "curve": self.curve}
-        given = [f"[{name}]" for name, part in parts.items() if part is not None]
-        if self.process is not None and given:
-            raise ValueError(
-                f"[process] must stand alone, got {', '.join(given)} beside it; remove "
-                "one or the other."
-            )
-        if self.process is None and (self.potential is None or self.model is None):
-            raise ValueError(
-                "the sections [potential] and [model], or [process], must be given, "
-                f"got {', '.join(given) or 'none of them'}."
-            )
-        return self
 
     def build(self) -> Problem:
         """Return model, grid, initial density, scheme and the arguments of `solve`.
@@ -89,16 +59,15 @@ class RunConfig(Section):
         MemoryLimitError
             If the densities alone would not fit into memory.
         """
-        with _section("model" if self.process is None else "process"):
-            model = self._model()
-        with _section("grid"):
+        model = self.build_model()
+        with named_section("grid"):
             grid = self._grid(model)
         self._check_memory(grid)
-        with _section("initial"):
+        with named_section("initial"):
             p0 = self.initial.make(grid=grid, potential=model.potential)
-        with _section("scheme"):
+        with named_section("scheme"):
             scheme = self.scheme.make(grid=grid, model=model)
-        with _section("run"):
+        with named_section("run"):
             arguments = self._arguments(model, grid)
         return Problem(model, grid, p0, scheme, arguments)
 
@@ -111,22 +80,6 @@ class RunConfig(Section):
         run = {**self.run.model_dump(), "ds": float(problem.arguments["ds"])}
         tables = {**self.model_dump(exclude_none=True), "grid": grid, "run": run}
         return RunConfig.model_validate(tables)
-
-    def to_toml(self) -> str:
-        """Return the configuration as TOML, with the defaults written out."""
-        tables = self.model_dump(exclude_none=True)
-        return "\n".join(
-            f"[{name}]\n" + "".join(_line(*item) for item in table.items())
-            for name, table in tables.items()
-        )
-
-    def _model(self) -> LayDownModel:
-        if self.potential is None or self.model is None:
-            process = cast(Section, self.process)
-            return cast(LayDownModel, process.make().model)
-        curve = FixedBelt() if self.curve is None else self.curve.make()
-        model = self.model.make(potential=self.potential.make(), curve=curve)
-        return cast(LayDownModel, model)
 
     def _grid(self, model: LayDownModel) -> PhaseSpaceGrid:
         if self.grid is None:
@@ -159,23 +112,3 @@ class RunConfig(Section):
             if value is not None:
                 arguments[name] = value
         return arguments
-
-
-@contextmanager
-def _section(name: str) -> Iterator[None]:
-    """Name the section in what its constructor complains about."""
-    try:
-        yield
-    except (ValueError, TypeError) as error:
-        raise ConfigurationError(f"section [{name}]: {error}") from error
-
-
-def _line(key: str, value: Any) -> str:
-    return f"{key} = {_literal(value)}\n"
-
-
-def _literal(value: Any) -> str:
-    if isinstance(value, tuple):
-        return f"[{', '.join(map(_literal, value))}]"
-    # JSON and TOML differ in infinity only.
-    return repr(value) if isinstance(value, float) else json.dumps(value)

@@ -61,7 +61,7 @@ def group_averages(
     """The averages of a group of paths; shape (n_functions, n_saved, n)."""
     ensemble = paths.ensemble
     begin = ensemble.first_step
-    saves = ensemble.schedule.saves[: len(paths.s)]
+    saves = ensemble.schedule.saves
     averages = np.full((len(functions), len(saves), n), np.nan)
     # Sums over all steps so far; the ends of the trapezoidal rule count one half.
     sums, starts = np.zeros((2, len(functions), n))

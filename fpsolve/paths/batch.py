@@ -30,6 +30,8 @@ class Batch(NamedTuple):
     Attributes
     ----------
     first, n : int
+    step : int
+        Number of the step that was reached.
     states : ndarray, shape (n_saved, 5, n)
         Or (n_saved, 5, 0) when they are not kept; likewise `start` and `end`.
     sums : ndarray, shape (n_saved, N_SUMS)
@@ -40,6 +42,7 @@ class Batch(NamedTuple):
 
     first: int
     n: int
+    step: int
     states: Array
     sums: Array
     counts: NDArray[np.int64]
@@ -93,11 +96,11 @@ class BatchRun:
                 self._keep()
 
     def _keep(self) -> None:
-        xi1, xi2, cosine, sine, _ = self.state
-        self.sums.append(moment_sums(xi1, xi2, cosine, sine))
+        self.sums.append(moment_sums(self.state))
         if self.ensemble.keep:
             self.states.append(self.state.copy())
         if self.ensemble.grid is not None:
+            xi1, xi2 = self.state[:2]
             alpha = angle_of(self.state)
             counts, outside = count_paths(self.ensemble.grid, xi1, xi2, alpha)
             self.counts.append(counts)
@@ -111,6 +114,7 @@ class BatchRun:
         return Batch(
             first=self.first,
             n=self.n,
+            step=self.step,
             states=np.array(self.states).reshape(len(self.sums), N_STATE, n_kept),
             sums=np.array(self.sums).reshape(-1, N_SUMS),
             counts=np.array(self.counts, dtype=np.int64).reshape(shape),

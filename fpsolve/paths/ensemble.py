@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 from fpsolve.errors import FpsolveError
 from fpsolve.grids import PhaseSpaceGrid
-from fpsolve.models import LayDownModel
 from fpsolve.paths.integrators import Integrator
 from fpsolve.paths.randomness import noise_key, start_generator
 from fpsolve.schedule import Schedule
@@ -31,7 +30,8 @@ class Ensemble:
 
     Attributes
     ----------
-    model : LayDownModel
+    model : LayDownModel or None
+        None for a file whose potential or curve was the user's own code.
     n_paths : int
     schedule : Schedule
         Steps and the ones after which to keep something.
@@ -47,7 +47,7 @@ class Ensemble:
         Step at which the paths begin; positive for paths that go on.
     """
 
-    model: LayDownModel
+    model: Any
     n_paths: int
     schedule: Schedule
     seed: int

@@ -70,7 +70,9 @@ def isotropic_power(
     energy = rng.gamma(2.0 / exponent, size=n)
     radius = scale * (exponent * energy) ** (1.0 / exponent)
     direction = rng.uniform(0.0, 2.0 * np.pi, n)
-    return radius[:, None] * np.stack([np.cos(direction), np.sin(direction)], axis=1)
+    away = np.stack([np.cos(direction), np.sin(direction)], axis=1)
+    points: Array = radius[:, None] * away
+    return points
 
 
 def plane_rejection(potential: Potential) -> CellRejection:

@@ -111,8 +111,11 @@ class GaussianLaw:
 
     def sample(self, rng: np.random.Generator, n: int) -> Sample:
         """Draw n points: ξ of shape (n, 2) and α of shape (n,)."""
-        root = np.linalg.cholesky(np.array(self.variance))
-        xi = np.array(self.mean) + rng.standard_normal((n, 2)) @ root.T
+        (root11, _), (root21, root22) = np.linalg.cholesky(np.array(self.variance))
+        normal1, normal2 = rng.standard_normal((n, 2)).T
+        xi1 = self.mean[0] + root11 * normal1
+        xi2 = self.mean[1] + root21 * normal1 + root22 * normal2
+        xi = np.stack([xi1, xi2], axis=1)
         alpha = rng.vonmises(self.angle or 0.0, self.concentration, n)
         return xi, alpha % TURN
 

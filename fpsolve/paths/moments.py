@@ -8,27 +8,29 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from fpsolve._kernels.paths import LANES, N_POWERS, N_PRODUCTS, sum_powers
+
 __all__ = ["N_SUMS", "Moments", "moment_sums"]
 
 Array = NDArray[np.float64]
 
 # Powers (i, j) of ξ1 and ξ2 that are summed, then cos, sin and their squares.
-POWERS = [
-    (i, j) for total in range(5) for i in range(total, -1, -1) for j in [total - i]
-]
-N_SUMS = len(POWERS) + 4
+POWERS = [(i, total - i) for total in range(N_POWERS) for i in range(total, -1, -1)]
+N_SUMS = N_PRODUCTS + 4
 PLACE = {power: place for place, power in enumerate(POWERS)}
 
 
-def moment_sums(xi1: Array, xi2: Array, cosine: Array, sine: Array) -> Array:
-    """Sums over paths of the powers of ξ and of cos α and sin α; shape (N_SUMS,)."""
-    # Paths may be so far away that powers overflow; their moments are then infinite.
-    with np.errstate(over="ignore", invalid="ignore"):
-        powers1 = [np.ones_like(xi1), xi1, xi1**2, xi1**3, xi1**4]
-        powers2 = [np.ones_like(xi2), xi2, xi2**2, xi2**3, xi2**4]
-        sums = [float(np.dot(powers1[i], powers2[j])) for i, j in POWERS]
-    angular = [cosine.sum(), sine.sum(), np.dot(cosine, cosine), np.dot(sine, sine)]
-    return np.array([*sums, *angular], dtype=np.float64)
+def moment_sums(state: Array) -> Array:
+    """Sums over paths of the powers of ξ and of cos α and sin α; shape (N_SUMS,).
+
+    Blocks are summed one after the other, so that threads change nothing. Paths may be
+    so far away that powers overflow; their moments are then infinite.
+    """
+    n_blocks = -(-state.shape[1] // LANES)
+    sums = np.zeros((n_blocks, N_SUMS))
+    sum_powers(state, sums)
+    total: Array = np.cumsum(sums, axis=0)[-1]
+    return total
 
 
 @dataclass(frozen=True, eq=False)

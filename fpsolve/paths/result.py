@@ -71,8 +71,17 @@ class Paths:
 
     @property
     def model(self) -> LayDownModel:
-        """The model that was sampled."""
-        return self.ensemble.model
+        """The model; None for a file whose potential was the user's own code."""
+        model: LayDownModel = self.ensemble.model
+        return model
+
+    def check_model(self) -> None:
+        """Raise ValueError unless the model is known, as the paths go on by it."""
+        if self.ensemble.model is None:
+            raise ValueError(
+                "the model must be known for this, got paths from a file whose "
+                "potential or curve was the user's own code; sample them again."
+            )
 
     @property
     def n_paths(self) -> int:
@@ -135,6 +144,7 @@ class Paths:
     @property
     def eta(self) -> Array:
         """Fibres on the belt, η = ξ + γ(s); shape (n_saved, n_paths, 2)."""
+        self.check_model()
         position = np.stack(self.model.curve.position(self.s), axis=-1)
         return self.xi + position[:, None, :]
 
@@ -210,7 +220,8 @@ class Paths:
             nothing to average.
         """
         if callable(f):
-            return time_averages(self, [f])[0]
+            alone: Array = time_averages(self, [f])[0]
+            return alone
         return time_averages(self, list(f))
 
     def replay(self, k: int, every: int = 1) -> Trajectory:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
@@ -135,6 +136,7 @@ def go_on(
             "the states must have been kept to go on, got paths sampled with "
             "keep=False; sample with keep=True."
         )
+    paths.check_model()
     before = paths.ensemble.schedule
     reached = before.s(before.n_steps)
     if not s_end > reached:
@@ -254,10 +256,12 @@ def keeping_what_is_done(
 def finished_part(
     ensemble: Ensemble, batches: list[Batch], watch: Stopwatch, message: str
 ) -> Paths:
-    """The paths of the batches that are there."""
-    n_paths = sum(batch.n for batch in batches)
-    provenance = watch.provenance(n_paths * ensemble.schedule.n_steps)
-    fewer = replace(ensemble, n_paths=n_paths)
+    """The paths of the batches that are there, to where they came."""
+    n_paths, reached = sum(batch.n for batch in batches), batches[0].step
+    saves = ensemble.schedule.saves[: len(batches[0].sums)]
+    schedule = replace(ensemble.schedule, n_steps=reached, saves=saves)
+    fewer = replace(ensemble, n_paths=n_paths, schedule=schedule)
+    provenance = watch.provenance(n_paths * (reached - ensemble.first_step))
     return replace(
         gathered(fewer, batches, provenance), status="interrupted", message=message
     )
@@ -268,14 +272,13 @@ def gathered(
 ) -> Paths:
     """The paths of all batches as one result."""
     schedule = ensemble.schedule
-    n_saved = min((len(batch.sums) for batch in batches), default=0)
     counts, outside = batches[0].counts[:0], batches[0].outside[:0]
     if ensemble.grid is not None:
         counts = np.sum([batch.counts for batch in batches], axis=0)
         outside = np.sum([batch.outside for batch in batches], axis=0)
     return Paths(
         ensemble=ensemble,
-        s=np.array([schedule.s(step) for step in schedule.saves[:n_saved]]),
+        s=np.array([schedule.s(step) for step in schedule.saves]),
         states=np.concatenate([batch.states for batch in batches], axis=2),
         sums=np.sum([batch.sums for batch in batches], axis=0),
         counts=counts,
@@ -290,7 +293,7 @@ def stepwise(
     s_start: float, s_end: float, ds: float, save_at: Iterable[float] | None
 ) -> Schedule:
     """Steps of exactly ds, whatever the end: a path must not depend on it."""
-    schedule = make_schedule((s_start, s_end), ds, save_at, record_every=1)
+    schedule = make_schedule((s_start, s_end), ds, save_at, record_every=sys.maxsize)
     return replace(schedule, ds=float(ds), records=())
 
 

@@ -53,6 +53,7 @@ def traced(paths: Paths, first: int, n: int) -> Iterator[tuple[int, Array]]:
 
     The first leg is the start alone.
     """
+    paths.check_model()
     ensemble, state = paths.ensemble, paths.states_at_start(first, n)
     step, end = ensemble.first_step, ensemble.schedule.n_steps
     yield step, state[None].copy()

@@ -1,24 +1,55 @@
-"""Figures of a solution; each function returns a matplotlib Figure.
+"""Figures of solutions and of paths; each function returns a matplotlib Figure.
 
 The figures belong to no window: nothing is shown and pyplot keeps no record of them.
 Save one with ``figure.savefig(path)``; a notebook shows it when it is the last value
 of a cell.
 """
 
+import importlib
+from typing import TYPE_CHECKING, Any
+
 from fpsolve.plotting.angle import plot_angle
+from fpsolve.plotting.ensembles import plot_ensemble
 from fpsolve.plotting.entropy import plot_entropy
 from fpsolve.plotting.files import save_figures
 from fpsolve.plotting.marginals import plot_marginals
 from fpsolve.plotting.moments import plot_moments
 from fpsolve.plotting.movie import movie
 from fpsolve.plotting.overview import plot_overview
+from fpsolve.plotting.trajectories import (
+    plot_fibre,
+    plot_nozzles,
+    plot_trajectories,
+)
+
+if TYPE_CHECKING:
+    from fpsolve.plotting.comparison import plot_cross_check
+    from fpsolve.plotting.ergodicity import plot_ergodic_averages
 
 __all__ = [
     "movie",
     "plot_angle",
+    "plot_cross_check",
+    "plot_ensemble",
     "plot_entropy",
+    "plot_ergodic_averages",
+    "plot_fibre",
     "plot_marginals",
     "plot_moments",
+    "plot_nozzles",
     "plot_overview",
+    "plot_trajectories",
     "save_figures",
 ]
+
+# Figures of studies, which are loaded on first use.
+_STUDIES = {
+    "plot_cross_check": "fpsolve.plotting.comparison",
+    "plot_ergodic_averages": "fpsolve.plotting.ergodicity",
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name in _STUDIES:
+        return getattr(importlib.import_module(_STUDIES[name]), name)
+    raise AttributeError(f"module 'fpsolve.plotting' has no attribute {name!r}")

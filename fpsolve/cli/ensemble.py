@@ -1,0 +1,122 @@
+"""What is printed about sampled paths: the plan before, the moments after."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from fpsolve.cli.plan import units_text, with_options
+
+if TYPE_CHECKING:
+    from fpsolve.config import PathsConfig, PathsProblem
+    from fpsolve.paths import Paths
+
+__all__ = ["print_moments", "print_paths_plan"]
+
+_MOST_ROWS = 11
+_COLUMNS = {
+    "E ξ₁": "mean_xi1",
+    "E ξ₂": "mean_xi2",
+    "Var ξ₁": "variance_xi1",
+    "Var ξ₂": "variance_xi2",
+    "E cos α": "mean_cos_alpha",
+}
+
+
+def print_paths_plan(
+    config: PathsConfig, problem: PathsProblem, out: Path, seed_from: str
+) -> None:
+    """Print equation, units, start, steps, method, and where the seed comes from."""
+    from rich.console import Console
+    from rich.table import Table
+
+    table = Table.grid(padding=(0, 2))
+    for name, text in _plan(config, problem, out, seed_from):
+        table.add_row(name, text)
+    Console(highlight=False, markup=False).print(table)
+
+
+def _plan(
+    config: PathsConfig, problem: PathsProblem, out: Path, seed_from: str
+) -> list[tuple[str, str]]:
+    from fpsolve.io.paths import process_equation
+
+    arguments = problem.arguments
+    lines = [("equation", process_equation(problem.model))]
+    if config.process is not None:
+        lines.append(("units", units_text(config.process.make())))
+    start = "ξ = 0, α uniform" if config.start is None else with_options(config.start)
+    lines += [("start", start), ("paths", _steps(arguments))]
+    lines += [
+        ("method", arguments["method"]),
+        ("seed", f"{arguments['seed']} ({seed_from})"),
+    ]
+    if config.histogram is not None:
+        lines.append(("histogram", _cells(arguments["histogram"])))
+    return [*lines, ("result", str(out / config.output.file_name))]
+
+
+def _steps(arguments: dict[str, Any]) -> str:
+    end, ds = arguments["s_end"], arguments["ds"]
+    kept = "" if arguments["keep"] else ", positions not kept"
+    return (
+        f"{arguments['n_paths']} of length {end:g}, ds = {ds:g}, saved at "
+        f"{len(arguments['save_at'])} arclengths{kept}"
+    )
+
+
+def _cells(grid: Any) -> str:
+    width1, width2 = grid.half_widths
+    shape = " x ".join(map(str, grid.shape))
+    return f"{shape} cells, |ξ₁| < {width1:g}, |ξ₂| < {width2:g}"
+
+
+def print_moments(paths: Paths) -> None:
+    """Print means and variances with their standard errors at some arclengths."""
+    from rich import box
+    from rich.console import Console
+    from rich.table import Table
+
+    console = Console(highlight=False, markup=False)
+    table = Table(box=box.SIMPLE_HEAD)
+    moments = paths.moments()
+    for name in ("s", *_COLUMNS):
+        table.add_column(name, justify="right")
+    for row in _rows(len(moments.s)):
+        cells = [
+            with_error(
+                float(moments.values[name][row]),
+                float(moments.standard_errors[name][row]),
+            )
+            for name in _COLUMNS.values()
+        ]
+        table.add_row(f"{moments.s[row]:.4g}", *cells)
+    console.print(table)
+    console.print("in parentheses: one standard error, in units of the last digit")
+    console.print(_speed(paths))
+
+
+def _rows(n_saved: int) -> list[int]:
+    """Return places evenly spread over the saved arclengths."""
+    places = np.linspace(0, n_saved - 1, min(n_saved, _MOST_ROWS))
+    return [int(place) for place in places.round()]
+
+
+def with_error(value: float, error: float) -> str:
+    """Return "0.153(16)" for 0.153 ± 0.016, two digits of the error; or what is exact.
+
+    From one on the error is written whole: "3.2(1.6)" is 3.2 ± 1.6.
+    """
+    if not (math.isfinite(error) and error > 0):
+        return f"{value:.4g}"
+    digits = min(max(1 - math.floor(math.log10(error)), 0), 9)
+    last = f"{error:.{digits}f}" if error >= 1 else f"{error * 10**digits:.0f}"
+    return f"{value:.{digits}f}({last})"
+
+
+def _speed(paths: Paths) -> str:
+    wall, cpu = (paths.provenance[f"{clock}_seconds"] for clock in ("wall", "cpu"))
+    return f"{paths.status} after {wall:.2f} s ({cpu:.2f} s of CPU time)"

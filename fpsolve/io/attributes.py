@@ -1,0 +1,108 @@
+"""What the datasets of all kinds of results have in common."""
+
+from __future__ import annotations
+
+import json
+import warnings
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from fpsolve.models import LayDownModel
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = [
+    "check_complete",
+    "describe_model",
+    "labels",
+    "origin",
+    "read_model",
+    "to_json",
+]
+
+# Entries of `provenance` that stand in for a model that cannot be read back.
+_UNREADABLE = ("model_description", "equation")
+
+
+def labels(name: str) -> dict[str, str]:
+    """Return the attributes of a variable; every quantity is dimensionless."""
+    return {"long_name": name, "units": "1"}
+
+
+def to_json(value: Any) -> str:
+    """Return the value as JSON, with the repr of what JSON cannot hold."""
+    # A user's own potential may hold anything; its repr describes it best.
+    return json.dumps(value, default=_plain, ensure_ascii=False)
+
+
+def describe_model(
+    model: LayDownModel | None, equation: str | None, provenance: Mapping[str, Any]
+) -> dict[str, str]:
+    """Return the attributes `equation` and `model`.
+
+    Parameters
+    ----------
+    model : LayDownModel or None
+        None if it was read from a file from which it could not be made again; its
+        description goes on as it came.
+    equation : str or None
+        What was solved, with parameters; None without a model.
+    provenance : mapping
+    """
+    if model is None:
+        description, equation = (provenance.get(key, "") for key in _UNREADABLE)
+    else:
+        description = to_json(model.to_dict())
+    return {"equation": equation or "", "model": description}
+
+
+def origin(provenance: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the attributes that tell what made the result, and `provenance` whole.
+
+    Versions and date are seen by a reader of the file without parsing.
+    """
+    own = {key: entry for key, entry in provenance.items() if key not in _UNREADABLE}
+    versions = own.get("versions", {})
+    flat = {f"{package}_version": number for package, number in versions.items()}
+    if "date" in own:
+        flat["date_created"] = own["date"]
+    return {**flat, "provenance": to_json(own)}
+
+
+def check_complete(
+    dataset: xr.Dataset, variables: Iterable[str], attributes: Iterable[str]
+) -> None:
+    """Raise ValueError if a variable or an attribute is missing."""
+    missing = [f"`{name}`" for name in variables if name not in dataset]
+    missing += [f"`{name}`" for name in attributes if name not in dataset.attrs]
+    if missing:
+        raise ValueError(f"{', '.join(missing)} is missing in it")
+
+
+def read_model(
+    attributes: Mapping[str, Any], provenance: dict[str, Any]
+) -> LayDownModel | None:
+    """Return the model, or None with a warning if it was made of a user's functions.
+
+    Its description and equation are added to the provenance then.
+    """
+    try:
+        return LayDownModel.from_dict(json.loads(attributes["model"]))
+    except ValueError as error:
+        provenance["model_description"] = attributes["model"]
+        provenance["equation"] = attributes["equation"]
+        warnings.warn(
+            f"the model could not be read back, so `model` is None: {error}",
+            UserWarning,
+            stacklevel=5,
+        )
+        return None
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, np.generic):
+        return value.item()
+    return value.tolist() if isinstance(value, np.ndarray) else repr(value)

@@ -1,0 +1,85 @@
+"""Laws of the start of paths, as an attribute and, where needed, arrays."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from fpsolve._checks import construct
+from fpsolve.grids import PhaseSpaceGrid
+from fpsolve.io.attributes import labels
+from fpsolve.paths import DensityLaw, EquilibriumLaw, GaussianLaw, PointLaw
+from fpsolve.paths.ensemble import GivenStart
+from fpsolve.potentials import potential_from_dict
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["describe_law", "law_variables", "read_law"]
+
+# Stands in `provenance` for a law that cannot be read back.
+_UNREADABLE = "initial_description"
+_DENSITY = ("initial_xi1", "initial_xi2", "initial_alpha")
+_KNOWN = (PointLaw, GaussianLaw, EquilibriumLaw, DensityLaw, GivenStart)
+
+
+def describe_law(law: Any, provenance: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a law without its arrays as a JSON-able dictionary."""
+    if isinstance(law, _KNOWN):
+        return law.to_dict()
+    if law is None and _UNREADABLE in provenance:
+        return dict(provenance[_UNREADABLE])
+    return {"kind": "custom", "description": repr(law)}
+
+
+def law_variables(law: Any) -> dict[str, Any]:
+    """Return the variables that hold the arrays of a law."""
+    if isinstance(law, DensityLaw):
+        name = "probability density of the start"
+        return {"initial_density": (_DENSITY, np.asarray(law.p), labels(name))}
+    if isinstance(law, GivenStart):
+        xi, alpha = "deviation ξ given for the start", "angle α given for the start"
+        return {
+            "initial_xi": (("initial_path", "component"), law.xi, labels(xi)),
+            "initial_alpha": (("initial_path",), law.alpha, labels(alpha)),
+        }
+    return {}
+
+
+def read_law(
+    description: Mapping[str, Any], dataset: xr.Dataset, provenance: dict[str, Any]
+) -> Any:
+    """Return the law, or None with a warning if it was a user's own.
+
+    Its description is added to the provenance then.
+    """
+    try:
+        return _law(dict(description), dataset)
+    except ValueError as error:
+        provenance[_UNREADABLE] = dict(description)
+        warnings.warn(
+            f"the law of the start could not be read back, so `initial` is None: "
+            f"{error}",
+            UserWarning,
+            stacklevel=5,
+        )
+        return None
+
+
+def _law(parameters: dict[str, Any], dataset: xr.Dataset) -> Any:
+    kind = parameters.pop("kind")
+    if kind == "given":
+        return GivenStart(dataset["initial_xi"].values, dataset["initial_alpha"].values)
+    if kind == "density":
+        grid = PhaseSpaceGrid.from_dict(parameters["grid"])
+        return DensityLaw(grid, dataset["initial_density"].values)
+    if kind == "equilibrium":
+        return EquilibriumLaw(potential_from_dict(parameters["potential"]))
+    if kind == "point":
+        return construct(PointLaw, "initial", parameters)
+    if kind == "gaussian":
+        return construct(GaussianLaw, "initial", parameters)
+    raise ValueError(f"{parameters.get('description', kind)} is a user's own law.")

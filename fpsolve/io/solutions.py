@@ -1,0 +1,159 @@
+"""A solution as a labelled `xarray.Dataset`, and back."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any
+
+from fpsolve.grids import PhaseSpaceGrid
+from fpsolve.io.attributes import (
+    check_complete,
+    describe_model,
+    labels,
+    origin,
+    read_model,
+    to_json,
+)
+from fpsolve.io.variables import COORDINATES, DENSITY, long_name
+from fpsolve.solution import Solution
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["from_xarray", "to_xarray"]
+
+_TITLE = "Solution of the fibre lay-down Fokker-Planck equation"
+_AXES = ("xi1", "xi2", "alpha")
+_NEEDED = ("s", "s_step", "density", "entropy_floor")
+_NEEDED_ATTRIBUTES = (
+    "model",
+    "grid",
+    "scheme",
+    "ds",
+    "status",
+    "message",
+    "provenance",
+)
+
+
+def to_xarray(solution: Solution) -> xr.Dataset:
+    """p(s, ξ1, ξ2, α) and every series as one labelled dataset.
+
+    The densities share memory with the solution. Dimensions: `s` (saved densities),
+    `xi1`, `xi2`, `alpha`, and `step` (recorded steps, with the coordinate `s_step`).
+    Error estimates, when there are any, are variables that end in `_error`. The
+    attributes hold what is needed to repeat the run: equation, model, grid and scheme
+    (as JSON), `ds`, status, versions and date.
+
+    Parameters
+    ----------
+    solution : Solution
+
+    Returns
+    -------
+    xarray.Dataset
+    """
+    import xarray as xr
+
+    variables: dict[str, Any] = {
+        "density": (("s", *_AXES), solution.densities, labels(DENSITY)),
+        "entropy_floor": (
+            (),
+            solution.entropy_floor,
+            labels("value that H(p|p_S) tends to on this grid"),
+        ),
+    }
+    for name, values in solution.series.items():
+        if name != "s":
+            variables[name] = ("step", values, labels(long_name(name)))
+    for name, values in (solution.errors or {}).items():
+        dimension = "step" if name in solution.series else "s"
+        error = f"{name}_error"
+        variables[error] = (dimension, values, labels(long_name(error)))
+    return xr.Dataset(variables, _coordinates(solution), _attributes(solution))
+
+
+def from_xarray(dataset: xr.Dataset) -> Solution:
+    """Return the solution that `to_xarray` turned into `dataset`.
+
+    Arrays come back bit for bit. A model made of a user's own functions cannot be
+    read back: `model` is None then, and its description and equation are in
+    `provenance`.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+
+    Raises
+    ------
+    ValueError
+        If the dataset does not have the layout of `to_xarray`.
+
+    Warns
+    -----
+    UserWarning
+        If the model could not be read back.
+    """
+    attributes = dataset.attrs
+    check_complete(dataset, _NEEDED, _NEEDED_ATTRIBUTES)
+    provenance = json.loads(attributes["provenance"])
+    model = read_model(attributes, provenance)
+    errors = _read_errors(dataset)
+    return Solution(
+        model=model,
+        grid=PhaseSpaceGrid.from_dict(json.loads(attributes["grid"])),
+        scheme=json.loads(attributes["scheme"]),
+        ds=float(attributes["ds"]),
+        series=_read_series(dataset),
+        saved_s=dataset["s"].values,
+        densities=dataset["density"].values,
+        entropy_floor=float(dataset["entropy_floor"]),
+        status=str(attributes["status"]),
+        message=str(attributes["message"]),
+        errors=errors or None,
+        provenance=provenance,
+    )
+
+
+def _coordinates(solution: Solution) -> dict[str, Any]:
+    values = {
+        "s": ("s", solution.saved_s),
+        "s_step": ("step", solution.series["s"]),
+        **{name: (name, getattr(solution.grid, name)) for name in _AXES},
+    }
+    return {
+        name: (dimension, array, labels(COORDINATES[name]))
+        for name, (dimension, array) in values.items()
+    }
+
+
+def _attributes(solution: Solution) -> dict[str, Any]:
+    model = solution.model
+    equation = None if model is None else model.equation
+    return {
+        "Conventions": "CF-1.11",
+        "title": _TITLE,
+        **describe_model(model, equation, solution.provenance),
+        "grid": to_json(solution.grid.to_dict()),
+        "scheme": to_json(solution.scheme),
+        "ds": solution.ds,
+        "status": solution.status,
+        "message": solution.message,
+        **origin(solution.provenance),
+    }
+
+
+def _read_series(dataset: xr.Dataset) -> dict[str, Any]:
+    series = {"s": dataset["s_step"].values}
+    for name, variable in dataset.data_vars.items():
+        if variable.dims == ("step",) and not str(name).endswith("_error"):
+            series[str(name)] = variable.values
+    return series
+
+
+def _read_errors(dataset: xr.Dataset) -> dict[str, Any]:
+    return {
+        str(name).removesuffix("_error"): variable.values
+        for name, variable in dataset.data_vars.items()
+        if str(name).endswith("_error")
+    }

@@ -1,0 +1,270 @@
+"""Density against paths: the same model answered twice, independently."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fpsolve._checks import check_integer
+from fpsolve.grids import PhaseSpaceGrid
+from fpsolve.models import LayDownModel
+from fpsolve.progress import ProgressCallback
+from fpsolve.schemes import drift_kick
+from fpsolve.solution import Solution
+from fpsolve.solve import Scheme, solve
+from fpsolve.steady_state import SteadyState
+from fpsolve.studies.agreement import MARGINALS, CrossCheck
+from fpsolve.studies.references import describe, model_of, places, reference_at
+from fpsolve.studies.starts import density_and_law
+from fpsolve.studies.station import TESTS_PER_STATION, Station
+from fpsolve.studies.steps import paths_step, solver_step
+
+if TYPE_CHECKING:
+    from fpsolve.paths import Paths
+
+__all__ = ["compare", "cross_check"]
+
+Array = NDArray[np.float64]
+
+FEWEST_PATHS, FEWEST_CELLS = 1000, 8
+RECORD_EVERY = 8
+
+
+def cross_check(
+    model: LayDownModel,
+    p0: Any,
+    s: float | Iterable[float],
+    *,
+    grid: PhaseSpaceGrid | None = None,
+    n_paths: int = 1_000_000,
+    seed: int,
+    ds: float | None = None,
+    paths_ds: float | None = None,
+    scheme: Scheme | None = None,
+    method: str = "splitting",
+    false_alarm: float = 1e-3,
+    cells: int = 512,
+    extrapolate: bool = True,
+    solve_options: Mapping[str, Any] | None = None,
+    client: Any = None,
+    progress: bool | ProgressCallback = False,
+) -> CrossCheck:
+    """Density of (7) against paths of (6): do both give the same law at every s?
+
+    Solves for the density, samples paths from the same start, and tests at every s
+    the counts of paths in cells of phase space against the integrals of the density
+    over them (χ², and the largest single cell), the marginals of ξ1, ξ2 and α (χ²),
+    and the moments in standard errors. Memory does not grow with the number of paths.
+
+    Parameters
+    ----------
+    model : LayDownModel
+    p0 : ndarray, shape grid.shape, or GaussianLaw, EquilibriumLaw, DensityLaw
+        Start of both: a density on the grid, or a law of `fpsolve.paths`.
+    s : float or iterable of float
+        Arclengths at which to compare.
+    grid : PhaseSpaceGrid
+        May be left out with a scheme or a DensityLaw, which have one.
+    n_paths : int
+        Standard errors fall like 1/√n_paths.
+    seed : int
+        Of the paths; the same seed gives the same result.
+    ds : float, optional
+        Step of the density; by default its L1 error is 1/√n_paths even before
+        extrapolation.
+    paths_ds : float, optional
+        Step of the paths; by default ds/2, or less until the estimated bias is a tenth
+        of the standard errors.
+    scheme : Scheme, optional
+        By default `drift_kick`, balanced if p0 allows it.
+    method : str
+        Of the paths; see `sample_paths`.
+    false_alarm : float
+        Probability that any test fails when there is nothing to find, at most.
+    cells : int
+        Largest number of cells of phase space that are told apart; fewer see smaller
+        differences of large scale.
+    extrapolate : bool
+        Richardson extrapolation of the density, which also estimates step errors.
+    solve_options : mapping, optional
+        Further options of `solve`, for instance its tolerances.
+    client : object, optional
+        Runs the paths; see `sample_paths`.
+    progress : bool or callable
+        As in `solve`; for the density, then for the paths.
+
+    Returns
+    -------
+    CrossCheck
+        Print it for the verdict.
+
+    Raises
+    ------
+    ValueError, TypeError
+        For arguments that do not fit each other; besides whatever `solve` and
+        `sample_paths` raise.
+
+    References
+    ----------
+    [KMW09]_, equations (6) and (7).
+    """
+    from fpsolve.paths import sample_paths
+
+    s = _checked_places(s)
+    n_paths = check_integer("n_paths", n_paths, at_least=FEWEST_PATHS)
+    _check_options(false_alarm, cells)
+    grid = _grid_of(grid, scheme, p0)
+    p0, law = density_and_law(p0, grid)
+    scheme = _scheme_for(model, grid, p0) if scheme is None else scheme
+    _check_scheme(scheme, model, grid)
+    ds = solver_step(model, grid, s, n_paths) if ds is None else float(ds)
+    solution = solve(
+        scheme, p0, (0.0, float(s[-1])), ds,
+        save_at=s.tolist(), extrapolate=extrapolate, progress=progress,
+        **{"record_every": RECORD_EVERY, **(solve_options or {})},
+    )  # fmt: skip
+    if paths_ds is None:
+        paths_ds = _paths_step(solution, s, n_paths)
+    paths = sample_paths(
+        model, n_paths, float(s[-1]), paths_ds,
+        seed=seed, initial=law, save_at=s.tolist(), method=method,
+        histogram=grid, keep=False, client=client, progress=progress,
+    )  # fmt: skip
+    return compare(solution, paths, s=s, false_alarm=false_alarm, cells=cells)
+
+
+def compare(
+    density: Solution | SteadyState,
+    paths: Paths,
+    *,
+    s: float | Iterable[float] | None = None,
+    false_alarm: float = 1e-3,
+    cells: int = 512,
+) -> CrossCheck:
+    """A density that was computed against paths that were sampled; see `cross_check`.
+
+    Parameters
+    ----------
+    density : Solution or SteadyState
+    paths : Paths
+        Kept, or with a histogram on the grid of the density.
+    s : float or iterable of float, optional
+        By default all arclengths saved by both; with a `SteadyState` the last one.
+    false_alarm : float
+        Probability that any test fails when there is nothing to find, at most.
+    cells : int
+        Largest number of cells of phase space that are told apart.
+
+    Returns
+    -------
+    CrossCheck
+
+    Raises
+    ------
+    ValueError
+        If both have no s in common, or there are too few paths.
+    """
+    _check_options(false_alarm, cells)
+    check_integer("n_paths", paths.n_paths, at_least=FEWEST_PATHS)
+    chosen = places(density, np.asarray(paths.s), s)
+    size = false_alarm / (TESTS_PER_STATION * chosen.size)
+    stations = [Station(density, paths, float(one), size, cells) for one in chosen]
+    return CrossCheck(
+        model=model_of(density, paths),
+        grid=density.grid,
+        s=chosen,
+        tests=tuple(test for station in stations for test in station.tests()),
+        false_alarm=false_alarm,
+        n_paths=paths.n_paths,
+        solver=describe(density),
+        sampler=_describe_paths(paths),
+        probabilities=_stacked([station.line_probabilities for station in stations]),
+        counts=_stacked([station.line_counts for station in stations]),
+    )
+
+
+def _stacked(stations: list[dict[str, Any]]) -> dict[str, Any]:
+    """Arrays over (s, cell) from one dictionary for every s."""
+    return {which: np.array([one[which] for one in stations]) for which in MARGINALS}
+
+
+def _describe_paths(paths: Paths) -> dict[str, Any]:
+    return {
+        "method": paths.method,
+        "ds": float(paths.ds),
+        "n_paths": paths.n_paths,
+        "seed": paths.seed,
+    }
+
+
+def _checked_places(s: float | Iterable[float]) -> Array:
+    """Arclengths, ascending and each once."""
+    listed = s if isinstance(s, Iterable) else (s,)
+    chosen = np.unique(np.array(list(listed), dtype=np.float64))
+    if not (chosen.size and np.all(np.isfinite(chosen)) and chosen[0] >= 0):
+        raise ValueError(f"`s` must be one or more non-negative arclengths, got {s!r}.")
+    if not chosen[-1] > 0:
+        raise ValueError("`s` must hold a positive arclength, got 0; nothing evolves.")
+    return chosen
+
+
+def _check_options(false_alarm: float, cells: int) -> None:
+    check_integer("cells", cells, at_least=FEWEST_CELLS)
+    if not 0 < false_alarm < 1:
+        raise ValueError(
+            f"`false_alarm` must lie between 0 and 1, got {false_alarm:g}; it is the "
+            "probability of a wrong alarm."
+        )
+
+
+def _grid_of(
+    grid: PhaseSpaceGrid | None, scheme: Scheme | None, p0: Any
+) -> PhaseSpaceGrid:
+    for owner in (scheme, p0):
+        known = getattr(owner, "grid", None)
+        if grid is None and isinstance(known, PhaseSpaceGrid):
+            grid = known
+    if grid is None:
+        raise TypeError(
+            "`grid` must be given unless `scheme` or `p0` has one; pass a "
+            "PhaseSpaceGrid, `suggest_grid(model)` proposes one."
+        )
+    return grid
+
+
+def _check_scheme(scheme: Scheme, model: LayDownModel, grid: PhaseSpaceGrid) -> None:
+    if scheme.model != model:
+        raise ValueError(
+            f"`scheme` must solve the model that is checked, got one for\n"
+            f"{scheme.model!r}; to compare two models, use `compare`."
+        )
+    if scheme.grid != grid:
+        raise ValueError(
+            f"`grid` must be that of the scheme, {scheme.grid}, got {grid}; leave it "
+            "out."
+        )
+
+
+def _scheme_for(model: LayDownModel, grid: PhaseSpaceGrid, p0: Array) -> Scheme:
+    """drift_kick, balanced where the density stays within reach of e^{−B}."""
+    if model.potential.normalisable:
+        balanced = drift_kick(model, grid, balanced=True)
+        try:
+            balanced.start(p0)
+        except ValueError:
+            # The start does not fall off like e^{−B}: p itself is evolved then.
+            pass
+        else:
+            return balanced
+    return drift_kick(model, grid)
+
+
+def _paths_step(solution: Solution, s: Array, n_paths: int) -> float:
+    """The longest step of the paths that is short enough at every s."""
+    references = [reference_at(solution, float(one)) for one in s if one > 0]
+    return min(
+        paths_step(solution.ds, one.moments, one.errors, n_paths) for one in references
+    )

@@ -1,0 +1,151 @@
+"""What paths are compared with: densities, their moments and step errors, by s."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fpsolve import diagnostics
+from fpsolve.models import LayDownModel
+from fpsolve.solution import Solution
+from fpsolve.steady_state import SteadyState
+
+__all__ = [
+    "MOMENTS",
+    "Reference",
+    "describe",
+    "model_of",
+    "places",
+    "reference_at",
+]
+
+Array = NDArray[np.float64]
+
+MOMENTS = (*diagnostics.MOMENTS, "mean_square")
+# Arclengths closer than this, relative to their size, are the same.
+SAME = 1e-9
+
+
+@dataclass(frozen=True)
+class Reference:
+    """A density at one s.
+
+    Attributes
+    ----------
+    density : ndarray, shape (n1, n2, n_alpha)
+    moments, errors : mapping
+        Values of `MOMENTS`, and their estimated step errors (NaN if unknown).
+    distance : float
+        Estimated L1 step error of the density; NaN if unknown.
+    """
+
+    density: Array
+    moments: Mapping[str, float]
+    errors: Mapping[str, float]
+    distance: float
+
+
+def places(
+    density: Solution | SteadyState, available: Array, s: float | Iterable[float] | None
+) -> Array:
+    """Arclengths to compare at: those asked for, else all that both sides have.
+
+    A stationary density belongs to every s; it is compared with the last paths.
+    """
+    if s is not None:
+        chosen = np.atleast_1d(np.asarray(s, dtype=np.float64))
+    elif isinstance(density, SteadyState):
+        chosen = available[-1:]
+    else:
+        chosen = np.array([one for one in density.saved_s if _among(one, available)])
+    missing = [float(one) for one in chosen if not _among(one, available)]
+    if missing or not chosen.size:
+        saved = ", ".join(f"{one:g}" for one in available)
+        wanted = ", ".join(f"{one:g}" for one in missing) or "none in common"
+        raise ValueError(
+            f"`s` must be saved by density and paths, got {wanted} and paths at "
+            f"{saved}; name the same arclengths in `save_at` of both."
+        )
+    return chosen
+
+
+def reference_at(density: Solution | SteadyState, s: float) -> Reference:
+    """The density at s, with moments and step errors.
+
+    The moments of an extrapolated run are the extrapolated moments.
+    """
+    if isinstance(density, SteadyState):
+        moments = density.moments()
+        errors = dict.fromkeys(moments, math.nan)
+        distance = math.nan if density.error is None else density.error
+        p = density.density
+    else:
+        p = density.density(s)
+        record = int(np.argmin(np.abs(density.series["s"] - s)))
+        moments, errors = _recorded(density, record)
+        distance = _distance(density, s)
+    moments["mean_square"], errors["mean_square"] = _mean_square(moments, errors)
+    return Reference(p, moments, errors, distance)
+
+
+def describe(density: Solution | SteadyState) -> dict[str, Any]:
+    """Where a density comes from: name, options and steps."""
+    if isinstance(density, SteadyState):
+        extrapolated = density.error is not None
+        return {
+            "name": "steady_state", "options": {}, "ds": density.ds,
+            "extrapolated": extrapolated, "residual": density.residual,
+        }  # fmt: skip
+    return {
+        "name": density.scheme["name"],
+        "options": density.scheme["options"],
+        "ds": density.ds,
+        "extrapolated": density.errors is not None,
+    }
+
+
+def model_of(density: Solution | SteadyState, paths: Any) -> LayDownModel | None:
+    """The model of a density; a stationary one does not know its own."""
+    found = paths.model if isinstance(density, SteadyState) else density.model
+    return found if isinstance(found, LayDownModel) else None
+
+
+def _among(s: float, available: Array) -> bool:
+    return bool(np.any(np.abs(available - s) <= SAME * max(1.0, abs(s))))
+
+
+def _recorded(
+    solution: Solution, record: int
+) -> tuple[dict[str, float], dict[str, float]]:
+    """Moments of a run at one of its records, and their Richardson estimates."""
+    estimates = solution.errors or {}
+    moments, errors = {}, {}
+    for name in diagnostics.MOMENTS:
+        moments[name] = float(solution.series[name][record])
+        known = name in estimates
+        errors[name] = float(estimates[name][record]) if known else math.nan
+    return moments, errors
+
+
+def _distance(solution: Solution, s: float) -> float:
+    if solution.errors is None:
+        return math.nan
+    place = int(np.argmin(np.abs(solution.saved_s - s)))
+    return float(solution.errors["density_l1"][place])
+
+
+def _mean_square(
+    moments: Mapping[str, float], errors: Mapping[str, float]
+) -> tuple[float, float]:
+    """E ‖ξ‖² = Var ξ₁ + Var ξ₂ + ‖E ξ‖², and its error to first order."""
+    value = error = 0.0
+    for axis in ("xi1", "xi2"):
+        mean = moments[f"mean_{axis}"]
+        value += moments[f"variance_{axis}"] + mean**2
+        error += errors[f"variance_{axis}"] + 2 * abs(mean) * errors[f"mean_{axis}"]
+    return value, error
