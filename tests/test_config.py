@@ -11,7 +11,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import fpsolve as fp
-from fpsolve.config import EXAMPLES, RunConfig, example_path, load_config, read_config
+from fpsolve.config import (
+    EXAMPLES,
+    PathsConfig,
+    RunConfig,
+    example_path,
+    load_config,
+    read_config,
+)
 from fpsolve.config.complaints import _SECTIONS
 from fpsolve.config.names import suggestion
 from fpsolve.errors import ConfigurationError
@@ -134,10 +141,12 @@ def test_examples_build_and_survive_writing(name):
 def test_the_configurations_in_the_documentation_build():
     page = Path(__file__).parents[1] / "docs" / "command_line.md"
     blocks = re.findall(r"```toml\n(.*?)```", page.read_text("utf-8"), re.DOTALL)
-    run, process = blocks
+    run, process, paths = blocks
     assert read_config(run).build().scheme.options["positive"]
     rest = run[run.index("[grid]") :]
     assert read_config(process + rest).build().model.belt_speed == 0.1
+    sampled = read_config(process + paths, kind=PathsConfig).build()
+    assert sampled.model.belt_speed == 0.1
 
 
 def test_the_first_example_is_the_one_of_the_paper():

@@ -8,7 +8,13 @@ import sys
 from pathlib import Path
 
 HERE = Path(__file__).parent
-SCRIPTS = ("error_laws.py", "entropy_identity.py", "performance/run.py")
+SCRIPTS = (
+    "error_laws.py",
+    "entropy_identity.py",
+    "path_bias.py",
+    "path_marginals.py",
+    "performance/run.py",
+)
 
 
 def main() -> None:

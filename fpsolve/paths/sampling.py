@@ -68,9 +68,9 @@ def sample_paths(
     seed : int or SeedSequence
     rng : Generator, int or SeedSequence
         Instead of `seed`; a generator gives one number, the seed that is recorded.
-    initial : law, or (xi, alpha), optional
+    initial : law or pair of arrays, optional
         A law from `fpsolve.paths` (or any object with ``sample(rng, n)``), or arrays of
-        shape (n_paths, 2) and (n_paths,), or one point for all. By default ξ = 0, the
+        shape (n_paths, 2) and (n_paths,) for ξ and α, or one point for all. By default ξ = 0, the
         point below the nozzle, and a uniform angle.
     save_at : iterable of float, optional
         Where to keep the paths; by default at the end.

@@ -13,6 +13,7 @@ from fpsolve.studies.ergodic_fit import ErgodicFit, ErrorShape, fit_ergodic_erro
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.axes import Axes
+    from matplotlib.axis import Axis
     from matplotlib.figure import Figure
 
 __all__ = ["plot_ergodic_averages"]
@@ -114,6 +115,7 @@ def _draw_errors(
     axes.set_xscale("log")
     axes.set_yscale("log")
     axes.set_xlim(s[0], s[-1])
+    _plain_numbers(axes.yaxis)
     axes.set_xlabel(r"arclength $s$")
     axes.set_ylabel(r"$\|s^{-1}\!\int f - \mathrm{E} f\| \,/\, \|f - \mathrm{E} f\|$")
     axes.set_title(f"$f =$ {_symbol(function)}")
@@ -162,7 +164,7 @@ def _draw_variances(axes: Axes, dataset: xr.Dataset, fit: ErgodicFit) -> None:
     axes.set_xlabel(r"noise $A$")
     axes.set_ylabel(r"$\lim\; s\,\mathrm{error}^2 \,/\, \|f - \mathrm{E} f\|^2$")
     axes.set_title("asymptotic variance; dashed: $c_1^2(c_2/A + c_3A)^2$")
-    _label_noises(axes, noises)
+    _plain_numbers(axes.xaxis)
     if drawn:
         axes.legend(loc="upper center", ncols=2, borderaxespad=0.2)
         bottom, top = axes.get_ylim()
@@ -184,15 +186,16 @@ def _mark_least(
     )  # fmt: skip
 
 
-def _label_noises(axes: Axes, noises: np.ndarray) -> None:
-    """Plain numbers along a range that is often less than a decade."""
+def _plain_numbers(axis: Axis) -> None:
+    """Label 0.2, 0.5, 1, … along a range of about a decade; not 5 x 10⁻¹."""
     from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
-    candidates = np.outer(10.0 ** np.arange(-3, 4), [1, 2, 3, 5]).ravel()
-    inside = (candidates >= 0.9 * noises.min()) & (candidates <= 1.1 * noises.max())
-    axes.xaxis.set_major_locator(FixedLocator(candidates[inside]))
-    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-    axes.xaxis.set_minor_locator(NullLocator())
+    low, high = axis.get_view_interval()
+    digits = [1, 2, 3, 5] if high < 30 * low else [1]
+    candidates = np.outer(10.0 ** np.arange(-6, 7), digits).ravel()
+    axis.set_major_locator(FixedLocator(candidates[candidates >= low].tolist()))
+    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axis.set_minor_locator(NullLocator())
 
 
 def _shades(count: int) -> list[str]:

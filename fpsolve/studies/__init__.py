@@ -14,7 +14,11 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from fpsolve.studies.agreement import AgreementTest, CrossCheck
     from fpsolve.studies.comparison import compare, cross_check
-    from fpsolve.studies.ergodicity import ErgodicFit, ergodic_averages
+    from fpsolve.studies.ergodicity import (
+        ErgodicFit,
+        ergodic_averages,
+        fit_ergodic_error,
+    )
 
 __all__ = [
     "AgreementTest",
@@ -23,6 +27,7 @@ __all__ = [
     "compare",
     "cross_check",
     "ergodic_averages",
+    "fit_ergodic_error",
 ]
 
 _HOME = {
@@ -32,6 +37,7 @@ _HOME = {
     "cross_check": "comparison",
     "ErgodicFit": "ergodicity",
     "ergodic_averages": "ergodicity",
+    "fit_ergodic_error": "ergodicity",
 }
 
 

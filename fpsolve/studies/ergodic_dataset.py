@@ -42,6 +42,24 @@ def averages_dataset(
     """
     import xarray as xr
 
+    numbers = _numbers(squared, saved, moments)
+    return xr.Dataset(
+        {
+            name: (where, values, _labels(meaning))
+            for name, (where, values, meaning) in numbers.items()
+        },
+        {
+            "noise": ("noise", noises, _labels("noise A")),
+            "function": ("function", np.array(names, dtype=object)),
+            "s": ("s", saved, _labels("arclength s")),
+        },
+    )
+
+
+def _numbers(
+    squared: Array, saved: Array, moments: EquilibriumMoments
+) -> dict[str, tuple[tuple[str, ...], Array, str]]:
+    """Dimensions, values and meaning of every variable."""
     dims = ("noise", "function", "s")
     mean = squared.mean(axis=0)
     error = np.sqrt(mean)
@@ -49,7 +67,7 @@ def averages_dataset(
     spread = _standard_error(squared)
     error_spread = spread / (2 * np.maximum(error, np.finfo(float).tiny))
     slopes = settled_slope(saved, squared)
-    numbers = {
+    return {
         "error": (dims, error, "L² error of the average"),
         "error_standard_error": (dims, error_spread, "standard error of `error`"),
         "scaled_variance": (dims, saved * mean, "s times squared error"),
@@ -66,17 +84,6 @@ def averages_dataset(
         "expectation": (("function",), moments.mean, "E f, by quadrature"),
         "deviation": (("function",), moments.deviation, "‖f − E f‖, by quadrature"),
     }  # fmt: skip
-    return xr.Dataset(
-        {
-            name: (where, values, _labels(meaning))
-            for name, (where, values, meaning) in numbers.items()
-        },
-        {
-            "noise": ("noise", noises, _labels("noise A")),
-            "function": ("function", np.array(names, dtype=object)),
-            "s": ("s", saved, _labels("arclength s")),
-        },
-    )
 
 
 def _standard_error(batches: Array) -> Array:

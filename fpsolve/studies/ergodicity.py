@@ -132,9 +132,7 @@ def ergodic_averages(
     functions = dict(default_observables(potential) if functions is None else functions)
     _check(potential, functions, n_paths, n_saved)
     s_end = check_positive("s_end", s_end)
-    amplitudes = np.array([check_positive("noises", noise) for noise in noises])
-    if not amplitudes.size:
-        raise ValueError("`noises` must hold at least one noise, got none.")
+    amplitudes = _amplitudes(noises)
     moments = equilibrium_moments(potential, functions)
     saved, steps = _arclengths(amplitudes, s_end, ds, n_saved)
     sequence = _own_sequence(seed)
@@ -174,6 +172,13 @@ def _check(
         raise ValueError("`functions` must hold at least one function, got none.")
     check_integer("n_paths", n_paths, N_BATCHES)
     check_integer("n_saved", n_saved, 8)
+
+
+def _amplitudes(noises: Iterable[float]) -> Array:
+    amplitudes = np.array([check_positive("noises", noise) for noise in noises])
+    if not amplitudes.size:
+        raise ValueError("`noises` must hold at least one noise, got none.")
+    return amplitudes
 
 
 def _own_sequence(seed: int | np.random.SeedSequence) -> np.random.SeedSequence:
