@@ -59,3 +59,16 @@ def on_threads():
             numba.set_num_threads(before)
 
     return call
+
+
+@pytest.fixture
+def fpsolve(tmp_path, monkeypatch):
+    """Call the command line in an empty folder; returns what click recorded."""
+    from typer.testing import CliRunner
+
+    from fpsolve.cli import app
+
+    monkeypatch.chdir(tmp_path)
+    # Wide enough that nothing is wrapped.
+    monkeypatch.setenv("COLUMNS", "200")
+    return lambda *words: CliRunner().invoke(app, list(map(str, words)))

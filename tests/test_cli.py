@@ -9,11 +9,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from command_line import assert_mistake, files
 from solutions import relaxing_solution
-from typer.testing import CliRunner
 
 from fpsolve import io
-from fpsolve.cli import app
 from fpsolve.config import load_config
 
 ROOT = Path(__file__).parents[1]
@@ -55,31 +54,10 @@ spinning_speed = 50.0
 
 
 @pytest.fixture
-def fpsolve(tmp_path, monkeypatch):
-    """Call the command line in an empty folder; returns what click recorded."""
-    monkeypatch.chdir(tmp_path)
-    # Wide enough that nothing is wrapped.
-    monkeypatch.setenv("COLUMNS", "200")
-    return lambda *words: CliRunner().invoke(app, list(map(str, words)))
-
-
-@pytest.fixture
 def config(tmp_path):
     path = tmp_path / "run.toml"
     path.write_text(CONFIG)
     return path
-
-
-def assert_mistake(result, message, code=2):
-    """One line of error, the right exit code, no traceback."""
-    assert result.exit_code == code, result.output
-    assert message in result.stderr
-    assert result.stderr.startswith("error: ")
-    assert "Traceback" not in result.output
-
-
-def files(folder):
-    return sorted(path.name for path in folder.iterdir())
 
 
 def test_a_run_writes_result_configuration_and_figures(fpsolve, config, tmp_path):

@@ -5,12 +5,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-import typer
 import xarray as xr
 from matplotlib.image import imread
-from typer.testing import CliRunner
 
-from fpsolve.cli.check import check
 from fpsolve.paths import sample_paths
 
 CONFIG = """
@@ -45,14 +42,9 @@ name = "small"
 
 
 @pytest.fixture
-def fpsolve_check(tmp_path, monkeypatch):
+def fpsolve_check(fpsolve):
     """Call the command in an empty folder; returns what click recorded."""
-    monkeypatch.chdir(tmp_path)
-    # Wide enough that no line of the table is wrapped.
-    monkeypatch.setenv("COLUMNS", "200")
-    app = typer.Typer(pretty_exceptions_enable=False)
-    app.command()(check)
-    return lambda *words: CliRunner().invoke(app, list(map(str, words)))
+    return lambda *words: fpsolve("check", *words)
 
 
 @pytest.fixture

@@ -10,12 +10,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from command_line import assert_mistake, files
 from solutions import relaxing_solution
-from typer.testing import CliRunner
 
 import fpsolve as fp
 from fpsolve import io
-from fpsolve.cli import app
 from fpsolve.cli.ensemble import with_error
 from fpsolve.config import PathsConfig, load_config
 
@@ -56,31 +55,10 @@ spinning_speed = 50.0
 
 
 @pytest.fixture
-def fpsolve(tmp_path, monkeypatch):
-    """Call the command line in an empty folder; returns what click recorded."""
-    monkeypatch.chdir(tmp_path)
-    # Wide enough that nothing is wrapped.
-    monkeypatch.setenv("COLUMNS", "200")
-    return lambda *words: CliRunner().invoke(app, list(map(str, words)))
-
-
-@pytest.fixture
 def config(tmp_path):
     path = tmp_path / "paths.toml"
     path.write_text(CONFIG)
     return path
-
-
-def assert_mistake(result, message, code=2):
-    """One line of error, the right exit code, no traceback."""
-    assert result.exit_code == code, result.output
-    assert message in result.stderr
-    assert result.stderr.startswith("error: ")
-    assert "Traceback" not in result.output
-
-
-def files(folder):
-    return sorted(path.name for path in folder.iterdir())
 
 
 def interrupting(at):

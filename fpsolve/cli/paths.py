@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -109,26 +108,7 @@ def _write_part(sampled: Paths | None, config: PathsConfig, out: Path) -> None:
 
 
 def _write(sampled: Paths, config: PathsConfig, out: Path, figures: bool) -> None:
-    """Write and print the result, its configuration, and the figures."""
     from fpsolve.cli.ensemble import print_moments
-    from fpsolve.io import save
-    from fpsolve.io.atomic import atomic_path
+    from fpsolve.cli.writing import write_result
 
-    toml = config.to_toml()
-    provenance = {**sampled.provenance, "configuration": toml}
-    sampled = replace(sampled, provenance=provenance)
-    print_moments(sampled)
-    result = out / config.output.file_name
-    if sampled.status != "finished":
-        # A part of the paths does not take the place of an older, complete result.
-        result = result.with_stem(f"{result.stem}-{sampled.status}")
-    typer.echo(save(sampled, result))
-    used = result.with_suffix(".toml")
-    with atomic_path(used) as draft:
-        draft.write_text(toml, encoding="utf-8")
-    typer.echo(used)
-    if figures:
-        from fpsolve.plotting import save_figures
-
-        for path in save_figures(sampled, out, prefix=f"{result.stem}-"):
-            typer.echo(path)
+    write_result(sampled, config, out, figures=figures, show=print_moments)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -123,26 +122,7 @@ def _evolve(problem: Problem) -> Solution:
 
 
 def _write(solution: Solution, config: RunConfig, out: Path, figures: bool) -> None:
-    """Write and print the result, its configuration, and the figures."""
     from fpsolve.cli.report import print_report
-    from fpsolve.io import save
-    from fpsolve.io.atomic import atomic_path
+    from fpsolve.cli.writing import write_result
 
-    toml = config.to_toml()
-    provenance = {**solution.provenance, "configuration": toml}
-    solution = replace(solution, provenance=provenance)
-    print_report(solution)
-    result = out / config.output.file_name
-    if solution.status != "finished":
-        # A part of a run does not take the place of an older, complete result.
-        result = result.with_stem(f"{result.stem}-{solution.status}")
-    typer.echo(save(solution, result))
-    used = result.with_suffix(".toml")
-    with atomic_path(used) as draft:
-        draft.write_text(toml, encoding="utf-8")
-    typer.echo(used)
-    if figures:
-        from fpsolve.plotting import save_figures
-
-        for path in save_figures(solution, out, prefix=f"{result.stem}-"):
-            typer.echo(path)
+    write_result(solution, config, out, figures=figures, show=print_report)
