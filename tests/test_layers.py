@@ -9,7 +9,7 @@ FLOORS = {
     "potentials": 1, "curves": 1, "models": 1,
     "grids": 2, "initial": 2, "diagnostics": 2, "process": 2, "decay": 2,
     "schedule": 2, "memory": 2, "progress": 2, "provenance": 2,
-    "paths": 2,
+    "paths": 2, "spectral": 2,
     "schemes": 3,
     "solution": 4, "solve": 4, "recording": 4, "extrapolation": 4, "steady_state": 4,
     "suggestions": 4,
@@ -17,7 +17,7 @@ FLOORS = {
 }  # fmt: skip
 # Independent answers to the same question: they never import each other, nor, being
 # on floor 2, the solver, not even inside a function.
-ORACLES = {"paths"}
+ORACLES = {"paths", "spectral"}
 SOLVER = {name for name, floor in FLOORS.items() if floor in (3, 4)}
 ENTRY_ONLY = {"matplotlib", "typer", "rich", "dask", "xarray", "pydantic"}
 

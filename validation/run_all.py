@@ -13,7 +13,9 @@ SCRIPTS = (
     "entropy_identity.py",
     "path_bias.py",
     "path_marginals.py",
+    "ergodic_averages.py",
     "performance/run.py",
+    "performance/paths.py",
 )
 
 
