@@ -27,6 +27,7 @@ __all__ = [
     "RunError",
     "RunInterrupted",
     "SteadyStateError",
+    "ToleranceError",
 ]
 
 
@@ -286,6 +287,33 @@ class SteadyStateError(FpsolveError):
             f"{tolerance:g}; allow more iterations or enlarge `tolerance`."
         )
         self.residual = residual
+        self.tolerance = tolerance
+
+
+class ToleranceError(FpsolveError):
+    """A result could not be computed as accurately as asked for.
+
+    Parameters
+    ----------
+    reached : float
+        Error estimated for the best result that was possible.
+    tolerance : float
+        Error asked for.
+    remedy : str
+        What helps.
+    """
+
+    def __init__(
+        self,
+        reached: float,
+        tolerance: float,
+        remedy: str = "raise `memory_limit` or enlarge `tolerance`",
+    ) -> None:
+        super().__init__(
+            f"tolerance {tolerance:g} not reached: the error is estimated at "
+            f"{reached:.2g}; {remedy}."
+        )
+        self.reached = reached
         self.tolerance = tolerance
 
 

@@ -61,6 +61,16 @@ EXAMPLES = [
         "steady state not reached: residual 0.001 exceeds tolerance 1e-08; allow more "
         "iterations or enlarge `tolerance`.",
     ),
+    (
+        errors.ToleranceError(reached=2.5e-6, tolerance=1e-10),
+        "tolerance 1e-10 not reached: the error is estimated at 2.5e-06; raise "
+        "`memory_limit` or enlarge `tolerance`.",
+    ),
+    (
+        errors.ToleranceError(1e-3, 1e-8, "start closer to the equilibrium"),
+        "tolerance 1e-08 not reached: the error is estimated at 0.001; start closer "
+        "to the equilibrium.",
+    ),
     (errors.ConfigurationError("no section `grid`."), "no section `grid`."),
     (
         errors.FileFormatError("run.nc", "it has no density"),

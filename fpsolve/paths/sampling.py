@@ -70,8 +70,8 @@ def sample_paths(
         Instead of `seed`; a generator gives one number, the seed that is recorded.
     initial : law or pair of arrays, optional
         A law from `fpsolve.paths` (or any object with ``sample(rng, n)``), or arrays of
-        shape (n_paths, 2) and (n_paths,) for ξ and α, or one point for all. By default ξ = 0, the
-        point below the nozzle, and a uniform angle.
+        shape (n_paths, 2) and (n_paths,) for ξ and α, or one point for all. By default
+        ξ = 0, the point below the nozzle, and a uniform angle.
     save_at : iterable of float, optional
         Where to keep the paths; by default at the end.
     s_start : float
