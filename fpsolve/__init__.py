@@ -52,6 +52,12 @@ if TYPE_CHECKING:
     from fpsolve.schemes import drift_kick, semi_lagrangian
     from fpsolve.solution import Solution
     from fpsolve.solve import solve
+    from fpsolve.spectral.evolution import spectral_solve
+    from fpsolve.spectral.gap import SpectralGap, spectral_gap
+    from fpsolve.spectral.optimal import OptimalNoise, optimal_noise
+    from fpsolve.spectral.solution import SpectralSolution
+    from fpsolve.spectral.spectrum import Spectrum, spectrum
+    from fpsolve.spectral.steady import SpectralSteadyState, spectral_steady_state
     from fpsolve.steady_state import SteadyState, steady_state
     from fpsolve.suggestions import suggest_grid, suggest_step
 
@@ -78,6 +84,12 @@ _MODULES = {
     "fpsolve.schemes": "drift_kick semi_lagrangian",
     "fpsolve.solution": "Solution",
     "fpsolve.solve": "solve",
+    "fpsolve.spectral.evolution": "spectral_solve",
+    "fpsolve.spectral.gap": "SpectralGap spectral_gap",
+    "fpsolve.spectral.optimal": "OptimalNoise optimal_noise",
+    "fpsolve.spectral.solution": "SpectralSolution",
+    "fpsolve.spectral.spectrum": "Spectrum spectrum",
+    "fpsolve.spectral.steady": "SpectralSteadyState spectral_steady_state",
     "fpsolve.steady_state": "SteadyState steady_state",
     "fpsolve.suggestions": "suggest_grid suggest_step",
 }
@@ -104,6 +116,7 @@ __all__ = [
     "NegativeDensityError",
     "NonFiniteDensityError",
     "NonFinitePathError",
+    "OptimalNoise",
     "OscillatingNozzle",
     "Paths",
     "PhaseSpaceGrid",
@@ -113,6 +126,10 @@ __all__ = [
     "RotatingNozzle",
     "RunInterrupted",
     "Solution",
+    "SpectralGap",
+    "SpectralSolution",
+    "SpectralSteadyState",
+    "Spectrum",
     "SteadyState",
     "SteadyStateError",
     "TabulatedCurve",
@@ -121,11 +138,16 @@ __all__ = [
     "errors",
     "initial",
     "load",
+    "optimal_noise",
     "paths",
     "plotting",
     "sample_paths",
     "semi_lagrangian",
     "solve",
+    "spectral_gap",
+    "spectral_solve",
+    "spectral_steady_state",
+    "spectrum",
     "steady_state",
     "studies",
     "suggest_grid",

@@ -14,6 +14,7 @@ SCRIPTS = (
     "path_bias.py",
     "path_marginals.py",
     "ergodic_averages.py",
+    "spectral_reference.py",
     "performance/run.py",
     "performance/paths.py",
 )

@@ -1,0 +1,84 @@
+"""Which basis discretises the generator of a model."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from fpsolve.models import LayDownModel
+from fpsolve.potentials import Potential, QuadraticPotential
+from fpsolve.spectral.hermite import HermiteDiscretisation
+from fpsolve.spectral.sectors import Discretisation
+from fpsolve.spectral.tensor import TensorDiscretisation
+
+__all__ = ["discretisation_for", "orbit_radius"]
+
+
+def discretisation_for(model: LayDownModel) -> Discretisation:
+    """The basis for the generator of a model.
+
+    Raises
+    ------
+    TypeError
+        If `model` is not a LayDownModel.
+    ValueError
+        If the model has no gap (no noise, no confinement, no autonomous curve) or no
+        basis (a potential neither isotropic nor quadratic, a belt under another).
+    """
+    check(model)
+    potential, noise = model.potential, model.noise
+    if isinstance(potential, QuadraticPotential):
+        if potential.isotropic and model.curve.fixed:
+            return HermiteDiscretisation(potential.sigma1, noise)
+        belt_speed = -float(model.curve.velocity(0.0)[0])
+        return TensorDiscretisation(
+            potential.sigma1, potential.sigma2, noise, belt_speed
+        )
+    if not potential.isotropic:
+        raise ValueError(
+            f"`potential` must be isotropic or quadratic, got {potential!r}; for "
+            "others fit the decay of a run of `solve`."
+        )
+    if not model.curve.fixed:
+        raise ValueError(
+            f"`potential` must be quadratic on a moving belt, got {potential!r}; for "
+            "others fit the decay of a run of `solve`."
+        )
+    from fpsolve.spectral.radial import RadialDiscretisation
+
+    return RadialDiscretisation(potential, noise)
+
+
+def check(model: LayDownModel) -> None:
+    """Raise unless the model has a stationary density that it forgets its start for."""
+    if not isinstance(model, LayDownModel):
+        raise TypeError(f"`model` must be a LayDownModel, got {model!r}.")
+    if not model.noise > 0:
+        raise ValueError(
+            "`noise` must be positive, got 0; without noise the orbits of different "
+            "energy never mix and there is no gap."
+        )
+    if not model.potential.normalisable:
+        raise ValueError(
+            f"`potential` must confine, got {model.potential!r}: exp(-B) has no "
+            "finite integral."
+        )
+    if not (model.curve.autonomous and model.curve.velocity(0.0)[1] == 0):
+        raise ValueError(
+            "`curve` must be a belt at rest or at constant speed, got "
+            f"{model.curve!r}; under a moving nozzle there is no spectrum to speak of."
+        )
+
+
+def orbit_radius(potential: Potential) -> float:
+    """Radius of the circular orbit, r B'(r) = 1: the length scale of the model.
+
+    For a quadratic potential the smaller throwing range.
+    """
+    if isinstance(potential, QuadraticPotential):
+        return min(potential.sigma1, potential.sigma2)
+    radii = np.geomspace(1e-9, 1e9, 3601)
+    turning = radii * potential.radial_derivative(radii)
+    beyond = np.flatnonzero(~(turning < 1))
+    return float(radii[beyond[0]]) if beyond.size else math.inf

@@ -1,0 +1,131 @@
+"""A few eigenvalues of one sparse matrix next to a shift."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csc_array, eye_array
+from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigs, splu
+
+__all__ = ["ShiftedInverse", "factor_bytes", "neighbour", "residual_norm"]
+
+Complex = NDArray[np.complex128]
+
+# Below this size LAPACK is as fast as Arnoldi, and Arnoldi needs room.
+DENSE = 40
+
+
+class ShiftedInverse:
+    """(matrix - shift)⁻¹ and Arnoldi iteration on it.
+
+    The start vector is fixed, so that equal arguments give equal results.
+
+    Parameters
+    ----------
+    matrix : csc_array
+        Real and square.
+    shift : complex
+        Must not be an eigenvalue. Every point with a positive real part is safe:
+        L + L* is negative semidefinite. A real shift keeps complex pairs exactly
+        conjugate.
+    """
+
+    def __init__(self, matrix: csc_array, shift: complex) -> None:
+        self.matrix, self.size = matrix, matrix.shape[0]
+        self.shift = complex(shift)
+        self.dense = self.size <= DENSE
+        if not self.dense:
+            self._factorise()
+
+    def _factorise(self) -> None:
+        real = self.shift.imag == 0
+        self.dtype = np.float64 if real else np.complex128
+        shift = self.shift.real if real else self.shift
+        shifted = (self.matrix - shift * eye_array(self.size)).astype(self.dtype)
+        # Structure and elimination order are symmetric: small factors.
+        self.factors = splu(
+            shifted.tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.1
+        )
+        self.operator = LinearOperator(
+            shifted.shape, matvec=self.factors.solve, dtype=self.dtype
+        )
+
+    def eigenpairs(
+        self, n: int, start: Any = None, tolerance: float = 0.0
+    ) -> tuple[Complex, Complex]:
+        """The n eigenvalues nearest to the shift, nearest first, and unit eigenvectors.
+
+        Fewer when the matrix is smaller; `start` is a vector near them.
+        The tolerance is relative to the distance from the shift, 0 for rounding.
+        """
+        if self.dense or n >= self.size - 1:
+            values, vectors = np.linalg.eig(self.matrix.toarray())
+        else:
+            values, vectors = self._arnoldi(n, self._start(start), tolerance)
+        order = np.argsort(np.abs(values - self.shift), kind="stable")[:n]
+        return values[order].astype(complex), vectors[:, order].astype(complex)
+
+    def distance(self) -> float:
+        """Distance of the nearest eigenvalue from the shift, to about one per cent."""
+        if self.dense:
+            values = np.linalg.eigvals(self.matrix.toarray())
+            return float(np.abs(values - self.shift).min())
+        try:
+            found = eigs(
+                self.operator,
+                k=1,
+                ncv=16,
+                v0=self._start(None),
+                tol=1e-2,
+                return_eigenvectors=False,
+            )
+        except ArpackNoConvergence:
+            return 0.0
+        return float(1 / np.abs(found[0]))
+
+    def _start(self, start: Any) -> Any:
+        if start is None:
+            start = np.random.default_rng(0).standard_normal(self.size)
+        real = self.shift.imag == 0
+        return (np.real(start) if real else np.asarray(start)).astype(self.dtype)
+
+    def _arnoldi(self, n: int, start: Any, tolerance: float) -> tuple[Complex, Complex]:
+        for n_krylov in (2 * n + 12, 4 * n + 40, 8 * n + 120):
+            n_krylov = min(n_krylov, self.size)
+            try:
+                values, vectors = eigs(
+                    self.operator, k=n, ncv=n_krylov, v0=start, tol=tolerance
+                )
+            except ArpackNoConvergence as error:
+                values, vectors = error.eigenvalues, error.eigenvectors
+            if len(values) >= n:
+                break
+        shift = self.shift.real if self.shift.imag == 0 else self.shift
+        return shift + 1 / values, vectors
+
+
+def neighbour(values: Complex, chosen: int | np.integer[Any]) -> complex | None:
+    """The nearest other eigenvalue, its conjugate included."""
+    others = np.delete(np.concatenate([values, values.conj()]), chosen)
+    others = others[np.abs(others - values[chosen]) > 0]
+    if not others.size:
+        return None
+    return complex(others[np.argmin(np.abs(others - values[chosen]))])
+
+
+def residual_norm(matrix: csc_array, value: complex, vector: Complex) -> float:
+    """‖L f - λ f‖/‖f‖ for the coefficients of f."""
+    defect = matrix @ vector - value * vector
+    return float(np.linalg.norm(defect) / np.linalg.norm(vector))
+
+
+def factor_bytes(size: int) -> int:
+    """Memory for the factors of a matrix of a sector, and its Krylov vectors.
+
+    Measured on the matrices of quadratic potentials: the factors hold about 3 log₂ n
+    complex entries and indices for every row.
+    """
+    return int(size * (3 * math.log2(max(size, 2)) * 24 + 60 * 16))
