@@ -15,7 +15,7 @@ from solutions import relaxing_solution
 
 import fpsolve as fp
 from fpsolve import io
-from fpsolve.cli.ensemble import with_error
+from fpsolve.cli.numbers import with_error
 from fpsolve.config import PathsConfig, load_config
 
 ROOT = Path(__file__).parents[1]
@@ -116,6 +116,8 @@ def test_sampling_says_what_it_does_and_what_came_out(fpsolve, config, tmp_path)
         (123.4, 45.0, "123(45)"),
         (1.5, 0.0, "1.5"),
         (1.5, float("nan"), "1.5"),
+        (0.37429405198, 1.2e-10, "0.3742940520(1)"),
+        (0.37429405198, 1e-13, "0.3742940520"),
     ],
 )
 def test_errors_are_printed_with_two_digits(value, error, text):

@@ -15,6 +15,8 @@ SCRIPTS = (
     "path_marginals.py",
     "ergodic_averages.py",
     "spectral_reference.py",
+    "decay_rate_is_the_gap.py",
+    "rate_asymptotes.py",
     "performance/run.py",
     "performance/paths.py",
 )

@@ -1,4 +1,4 @@
-"""The command line: `fpsolve run`, `paths`, `check`, `plot` and `info`.
+"""The command line: `fpsolve run`, `paths`, `check`, `rate`, `spectrum`, `plot`, …
 
 Whatever takes long to import is imported by the command that needs it, so that
 ``fpsolve --help`` answers at once.
@@ -14,7 +14,9 @@ from fpsolve.cli.check import check
 from fpsolve.cli.info import info
 from fpsolve.cli.paths import paths
 from fpsolve.cli.plot import plot
+from fpsolve.cli.rate import rate
 from fpsolve.cli.run import run
+from fpsolve.cli.spectrum import spectrum
 
 __all__ = ["app", "main"]
 
@@ -30,6 +32,8 @@ app = typer.Typer(
 app.command(epilog="Example: fpsolve run --example spunbond --out results")(run)
 app.command(epilog="Example: fpsolve paths --n-paths 10000 --out results")(paths)
 app.command(epilog="Example: fpsolve check --n-paths 100000 --out results")(check)
+app.command(epilog="Example: fpsolve rate --quick --out results")(rate)
+app.command(epilog="Example: fpsolve spectrum --potential linear --noise 0.8")(spectrum)
 app.command(epilog="Example: fpsolve plot results/laydown.nc --movie")(plot)
 app.command(epilog="Example: fpsolve info")(info)
 

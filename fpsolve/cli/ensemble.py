@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from fpsolve.cli.numbers import with_error
 from fpsolve.cli.plan import units_text, with_options
 
 if TYPE_CHECKING:
@@ -103,18 +103,6 @@ def _rows(n_saved: int) -> list[int]:
     """Return places evenly spread over the saved arclengths."""
     places = np.linspace(0, n_saved - 1, min(n_saved, _MOST_ROWS))
     return [int(place) for place in places.round()]
-
-
-def with_error(value: float, error: float) -> str:
-    """Return "0.153(16)" for 0.153 ± 0.016, two digits of the error; or what is exact.
-
-    From one on the error is written whole: "3.2(1.6)" is 3.2 ± 1.6.
-    """
-    if not (math.isfinite(error) and error > 0):
-        return f"{value:.4g}"
-    digits = min(max(1 - math.floor(math.log10(error)), 0), 9)
-    last = f"{error:.{digits}f}" if error >= 1 else f"{error * 10**digits:.0f}"
-    return f"{value:.{digits}f}({last})"
 
 
 def _speed(paths: Paths) -> str:

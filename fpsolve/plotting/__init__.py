@@ -25,27 +25,41 @@ from fpsolve.plotting.trajectories import (
 if TYPE_CHECKING:
     from fpsolve.plotting.comparison import plot_cross_check
     from fpsolve.plotting.ergodicity import plot_ergodic_averages
+    from fpsolve.plotting.rates import (
+        plot_asymptotic_variance,
+        plot_inverse_decay_rate,
+        plot_rates,
+        plot_spectrum,
+    )
 
 __all__ = [
     "movie",
     "plot_angle",
+    "plot_asymptotic_variance",
     "plot_cross_check",
     "plot_ensemble",
     "plot_entropy",
     "plot_ergodic_averages",
     "plot_fibre",
+    "plot_inverse_decay_rate",
     "plot_marginals",
     "plot_moments",
     "plot_nozzles",
     "plot_overview",
+    "plot_rates",
+    "plot_spectrum",
     "plot_trajectories",
     "save_figures",
 ]
 
 # Figures of studies, which are loaded on first use.
 _STUDIES = {
+    "plot_asymptotic_variance": "fpsolve.plotting.rates",
     "plot_cross_check": "fpsolve.plotting.comparison",
     "plot_ergodic_averages": "fpsolve.plotting.ergodicity",
+    "plot_inverse_decay_rate": "fpsolve.plotting.rates",
+    "plot_rates": "fpsolve.plotting.rates",
+    "plot_spectrum": "fpsolve.plotting.rates",
 }
 
 

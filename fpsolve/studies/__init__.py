@@ -2,8 +2,9 @@
 
 `cross_check` solves a model for its density, samples its paths and says whether both
 agree; `compare` does so for results that exist already. `ergodic_averages` measures
-how time averages converge to those of the equilibrium. The names are loaded on first
-use.
+how time averages converge to those of the equilibrium. `rate_versus_noise` puts decay
+rates of runs, spectra and proven bounds side by side, and `sweep` runs any function
+over many cases, in processes or on a cluster. The names are loaded on first use.
 """
 
 from __future__ import annotations
@@ -19,15 +20,22 @@ if TYPE_CHECKING:
         ergodic_averages,
         fit_ergodic_error,
     )
+    from fpsolve.studies.rates.poisson import asymptotic_variances
+    from fpsolve.studies.rates.rate_versus_noise import rate_versus_noise
+    from fpsolve.studies.rates.sweep import Case, sweep
 
 __all__ = [
     "AgreementTest",
+    "Case",
     "CrossCheck",
     "ErgodicFit",
+    "asymptotic_variances",
     "compare",
     "cross_check",
     "ergodic_averages",
     "fit_ergodic_error",
+    "rate_versus_noise",
+    "sweep",
 ]
 
 _HOME = {
@@ -38,6 +46,10 @@ _HOME = {
     "ErgodicFit": "ergodicity",
     "ergodic_averages": "ergodicity",
     "fit_ergodic_error": "ergodicity",
+    "Case": "rates.sweep",
+    "asymptotic_variances": "rates.poisson",
+    "rate_versus_noise": "rates.rate_versus_noise",
+    "sweep": "rates.sweep",
 }
 
 

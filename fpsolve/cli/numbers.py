@@ -1,0 +1,24 @@
+"""Numbers with their errors."""
+
+from __future__ import annotations
+
+import math
+
+__all__ = ["with_error"]
+
+MOST_DIGITS = 10
+
+
+def with_error(value: float, error: float) -> str:
+    """Return "0.153(16)" for 0.153 ± 0.016, two digits of the error; or what is exact.
+
+    From one on the error is written whole: "3.2(1.6)" is 3.2 ± 1.6. Ten digits are
+    shown at most, without an error if it is smaller than the last of them.
+    """
+    if not (math.isfinite(error) and error > 0):
+        return f"{value:.4g}"
+    digits = min(max(1 - math.floor(math.log10(error)), 0), MOST_DIGITS)
+    if error < 10.0**-MOST_DIGITS:
+        return f"{value:.{digits}f}"
+    last = f"{error:.{digits}f}" if error >= 1 else f"{error * 10**digits:.0f}"
+    return f"{value:.{digits}f}({last})"

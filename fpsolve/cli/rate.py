@@ -1,0 +1,279 @@
+"""`fpsolve rate`: how fast the density converges, against the noise."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from fpsolve.cli.errors import FAILED, INTERRUPTED, fail, reported_errors
+from fpsolve.cli.numbers import with_error
+from fpsolve.cli.potentials import (
+    Exponent,
+    Sigma1,
+    Sigma2,
+    Slope,
+    make_potential,
+)
+from fpsolve.cli.run import NoFigures, Out
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from fpsolve.potentials import Potential
+
+__all__ = ["rate"]
+
+Potentials = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--potential",
+        metavar="KIND",
+        help="quadratic, linear or power; may be given several times.",
+        show_default="quadratic and linear",
+    ),
+]
+Noises = Annotated[
+    list[float] | None,
+    typer.Option(
+        "--noise",
+        metavar="A",
+        help="Noise amplitude; may be given several times.",
+        show_default="nine from 0.25 to 4, with --quick three from 0.5 to 2",
+    ),
+]
+Quick = Annotated[bool, typer.Option("--quick", help="Coarser and shorter runs.")]
+Parts = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--part",
+        metavar="NAME",
+        help="relaxation, evolution, branches, gap or variance; may be given several "
+        "times.",
+        show_default="all",
+    ),
+]
+Scheduler = Annotated[
+    str | None,
+    typer.Option(
+        metavar="ADDRESS",
+        help="Run on the dask scheduler at this address.",
+        show_default=False,
+    ),
+]
+Workers = Annotated[
+    int | None,
+    typer.Option(min=0, help="Processes; 0 runs in this one.", show_default="CPUs"),
+]
+Tolerance = Annotated[
+    float | None,
+    typer.Option(
+        help="Relative tolerance of the gap.", show_default="1e-8, quick 1e-6"
+    ),
+]
+
+
+def rate(
+    potential: Potentials = None,
+    noise: Noises = None,
+    out: Out = Path("results"),
+    quick: Quick = False,
+    part: Parts = None,
+    tolerance: Tolerance = None,
+    sigma1: Sigma1 = 1.0,
+    sigma2: Sigma2 = None,
+    slope: Slope = 1.0,
+    exponent: Exponent = 4.0,
+    scheduler: Scheduler = None,
+    workers: Workers = None,
+    no_figures: NoFigures = False,
+) -> None:
+    """Measure, compute and bound the rate of convergence against the noise.
+
+    For each potential: the inverse decay rate of figure 5 from runs with errors, the
+    decay rate of the entropy, the spectral gap with its branches, asymptotic variances
+    of averages, proven bounds and asymptotes. Every finished case is kept in
+    OUT/rate-cases, so that the same command goes on where it was stopped.
+    """
+    with reported_errors():
+        from fpsolve.errors import RunInterrupted
+
+        amplitudes = noise if noise else _default_noises(quick)
+        chosen = [
+            make_potential(kind, sigma1, sigma2, slope, exponent)
+            for kind in potential or ("quadratic", "linear")
+        ]
+        options = {
+            "quick": quick, "tolerance": tolerance, "client": scheduler,
+            "workers": workers,
+        }  # fmt: skip
+        studies = []
+        for one in chosen:
+            parts = _parts_for(one, part)
+            try:
+                studies.append(_study(one, amplitudes, parts, out, options))
+            except RunInterrupted as interrupt:
+                _write(interrupt.solution, out, "-interrupted")
+                fail("interrupted; what was finished is kept", INTERRUPTED)
+            print_rates(studies[-1])
+            typer.echo(_write(studies[-1], out))
+        if not no_figures:
+            _draw(studies, out)
+        _report_failures(studies)
+
+
+def print_rates(dataset: xr.Dataset) -> None:
+    """Print one row for every noise: integral, rates, gap, bound."""
+    from rich import box
+    from rich.console import Console
+    from rich.table import Table
+
+    console = Console(highlight=False, markup=False)
+    table = Table(box=box.SIMPLE_HEAD, title=f"B = {dataset.attrs['formula']}")
+    columns = {name: read for name, read in _COLUMNS.items() if read[0] in dataset}
+    for name in ("A", *columns):
+        table.add_column(name, justify="right")
+    for row in range(dataset.sizes["noise"]):
+        one = dataset.isel(noise=row)
+        cells = [_cell(one, *read) for read in columns.values()]
+        table.add_row(f"{float(one['noise']):.4g}", *cells)
+    console.print(table)
+    console.print("in parentheses: the error in units of the last digit")
+
+
+# Heading: (variable, its error or None, factor).
+_COLUMNS: dict[str, tuple[str, str | None, float]] = {
+    "∫ H ds": ("inverse_decay_rate", "inverse_decay_rate_error", 1.0),
+    "spectral ∫ H ds": (
+        "spectral_inverse_decay_rate", "spectral_inverse_decay_rate_error", 1.0,
+    ),
+    "½ rate of H": ("entropy_rate", "entropy_rate_error", 0.5),
+    "spectral gap": ("gap", "gap_error", 1.0),
+    "proven": ("hypocoercive_bound", None, 1.0),
+}  # fmt: skip
+
+
+def _cell(one: xr.Dataset, name: str, error: str | None, factor: float) -> str:
+    value = factor * float(one[name])
+    if not math.isfinite(value):
+        return "-"
+    if error is None:
+        return f"{value:.3g}"
+    return with_error(value, factor * float(one[error]))
+
+
+def _default_noises(quick: bool) -> list[float]:
+    low, high, count = (0.5, 2.0, 3) if quick else (0.25, 4.0, 9)
+    ratio = (high / low) ** (1 / (count - 1))
+    return [float(f"{low * ratio**n:.4g}") for n in range(count)]
+
+
+def _parts_for(potential: Potential, wanted: list[str] | None) -> list[str] | None:
+    """The parts asked for, without the one that only quadratic potentials have."""
+    from fpsolve.potentials import QuadraticPotential
+
+    if wanted is None or isinstance(potential, QuadraticPotential):
+        return wanted
+    return [part for part in wanted if part != "evolution"] or wanted
+
+
+def _study(
+    potential: Potential,
+    noises: list[float],
+    parts: list[str] | None,
+    out: Path,
+    options: dict[str, Any],
+) -> xr.Dataset:
+    from fpsolve.studies.rates.rate_versus_noise import rate_versus_noise
+
+    store = None if potential.kind in ("callable", "custom") else out / "rate-cases"
+    with _bar(f"B = {potential.formula}") as report:
+        return rate_versus_noise(
+            potential, noises, parts=parts, directory=store, progress=report, **options
+        )
+
+
+@contextmanager
+def _bar(title: str) -> Iterator[Callable[[int, int, Any], None]]:
+    """A bar that counts cases; silent outside of a terminal."""
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+
+    console = Console(stderr=True)
+    columns = (
+        TextColumn(title), BarColumn(),
+        TextColumn("{task.completed:.0f}/{task.total:.0f} cases"),
+        TimeRemainingColumn(),
+    )  # fmt: skip
+    with Progress(
+        *columns, console=console, transient=True, disable=not console.is_terminal
+    ) as bar:
+        task = bar.add_task("rate", total=1)
+
+        def report(n_done: int, n_total: int, _: Any) -> None:
+            bar.update(task, completed=n_done, total=n_total)
+
+        yield report
+
+
+def _write(dataset: xr.Dataset, out: Path, suffix: str = "") -> Path:
+    import json
+
+    from fpsolve.io.atomic import atomic_path
+
+    out.mkdir(parents=True, exist_ok=True)
+    kind = json.loads(dataset.attrs["potential"])["kind"]
+    path = out / f"rate-{kind}{suffix}.nc"
+    with atomic_path(path) as draft:
+        dataset.to_netcdf(draft, engine="h5netcdf")
+    return path
+
+
+def _draw(studies: list[xr.Dataset], out: Path) -> None:
+    import json
+
+    from fpsolve.plotting.rates import (
+        plot_asymptotic_variance,
+        plot_inverse_decay_rate,
+        plot_rates,
+    )
+
+    if all("inverse_decay_rate" in one for one in studies):
+        _save(plot_inverse_decay_rate(studies), out / "rate-integral.png")
+    for one in studies:
+        kind = json.loads(one.attrs["potential"])["kind"]
+        if "gap" in one or "branch_rate" in one:
+            _save(plot_rates(one), out / f"rate-{kind}.png")
+        if "asymptotic_variance" in one:
+            path = out / f"rate-{kind}-variance.png"
+            _save(plot_asymptotic_variance(one), path)
+
+
+def _save(figure: Any, path: Path) -> None:
+    from fpsolve.io.atomic import atomic_path
+    from fpsolve.plotting.style import RESOLUTION, paper_style
+
+    with paper_style(), atomic_path(path) as draft:
+        figure.savefig(draft, dpi=RESOLUTION)
+    typer.echo(path)
+
+
+def _report_failures(studies: list[xr.Dataset]) -> None:
+    """Say which cases failed; the exit code is 1 if none was finished."""
+    from fpsolve.cli.errors import say
+
+    finished = 0
+    for study in studies:
+        for noise in study["noise"].to_numpy():
+            for part in study["part"].to_numpy():
+                one = study.sel(noise=noise, part=part)
+                status, message = str(one["status"].item()), str(one["message"].item())
+                finished += status == "finished"
+                if status == "failed":
+                    say(f"warning: {part} at A = {noise:g} failed: {message}")
+    if not finished:
+        raise typer.Exit(FAILED)

@@ -1,0 +1,301 @@
+"""One run to equilibrium: ∫ H ds and the decay rate of H, with errors."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import CubicHermiteSpline
+
+from fpsolve.decay import fit_decay
+from fpsolve.grids import PhaseSpaceGrid
+from fpsolve.models import LayDownModel
+from fpsolve.potentials import Potential
+from fpsolve.schemes import drift_kick
+from fpsolve.solve import solve
+from fpsolve.studies.rates.modes import SlowestMode, relative_norm, slowest_modes
+from fpsolve.studies.rates.poincare import poincare_constant
+from fpsolve.studies.starts import density_and_law
+from fpsolve.suggestions import suggest_grid, suggest_step
+
+__all__ = ["Plan", "plan_relaxation", "relaxation_case"]
+
+Array = NDArray[np.float64]
+
+N_SAVED = 32
+# e^{−B} at the edge of the box relative to its largest, and for the comparison.
+_EDGE, _COMPARED_EDGE = 2e-7, 1e-5
+# Cells of the comparison are longer by 4/3. Where a kink makes the order two, its
+# error then is 16/9 of that of the run, and their difference 7/9.
+_COARSER, _GRID_FACTOR = 4 / 3, 9 / 7
+# Largest A² ds: Strang splitting resolves the angular diffusion.
+_TURN = 0.8
+# A class without a mode that stands out is faster if it falls by this factor faster.
+_CLEARLY = 1.5
+# Records at every step until here, in steps; then at least every so much s.
+_DENSE, _RECORD = 16, 0.2
+# Angles by the least noise they suit; the comparison has a quarter fewer.
+_ANGLES = ((4.0, 16), (1.0, 24), (0.3, 32), (0.1, 64), (0.0, 128))
+
+
+@dataclass(frozen=True)
+class Plan:
+    """Grid, step and length of a run to equilibrium, and the grid it is compared with.
+
+    Attributes
+    ----------
+    grid, compared : PhaseSpaceGrid
+    ds : float
+    spacing : float
+        Arclength between two saved densities.
+    """
+
+    grid: PhaseSpaceGrid
+    compared: PhaseSpaceGrid
+    ds: float
+    spacing: float
+
+    @property
+    def s_end(self) -> float:
+        """Arclength at the end of the run."""
+        return N_SAVED * self.spacing
+
+
+def plan_relaxation(
+    model: LayDownModel,
+    tolerance: float,
+    e_folds: float,
+    s_end: float | None = None,
+) -> Plan:
+    """Plan a run in which H falls by about e^{−e_folds}.
+
+    The rate expected for its length interpolates the asymptotes: 1/(2/A² + A²/Λ).
+
+    Parameters
+    ----------
+    model : LayDownModel
+    tolerance : float
+        L1 error that cells and step aim at; see `suggest_grid`.
+    e_folds : float
+    s_end : float, optional
+        Length of the run instead of the one expected.
+    """
+    suggested = suggest_grid(model, tolerance)
+    cell = max(suggested.spacing[:2])
+    angles = next(n for least, n in _ANGLES if model.noise >= least)
+    grid = _grid(model.potential, cell, angles, _EDGE)
+    compared = _grid(model.potential, cell * _COARSER, 3 * angles // 4, _COMPARED_EDGE)
+    ds = min(float(suggest_step(model, grid, tolerance)), _TURN / model.noise**2)
+    if s_end is None:
+        poincare = poincare_constant(model.potential)
+        expected = 1 / (2 / model.noise**2 + model.noise**2 / poincare)
+        s_end = e_folds / (2 * expected)
+    spacing = s_end / N_SAVED
+    return Plan(grid, compared, spacing / math.ceil(spacing / ds), spacing)
+
+
+def _grid(
+    potential: Potential, cell: float, angles: int, edge: float
+) -> PhaseSpaceGrid:
+    """Cells of about that size in a box at whose edge e^{−B} is small."""
+    half1, half2 = (_half_width(potential, axis, edge) for axis in (0, 1))
+    n1, n2 = (4 * math.ceil(2 * half / (4 * cell)) for half in (half1, half2))
+    return PhaseSpaceGrid((half1, half2), (n1, n2, 4 * math.ceil(angles / 4)))
+
+
+def _half_width(potential: Potential, axis: int, edge: float) -> float:
+    places = np.geomspace(1e-3, 1e4, 20_000)
+    point = (places, 0.0) if axis == 0 else (0.0, places)
+    height = potential.value(*point) - float(potential.value(0.0, 0.0))
+    first = int(np.argmax(height > -math.log(edge)))
+    return round(float(places[first]), 3)
+
+
+def relaxation_case(
+    potential: Potential,
+    noise: float,
+    law: Any,
+    tolerance: float,
+    e_folds: float,
+    s_end: float | None = None,
+) -> dict[str, Any]:
+    """∫₀^S H ds and the asymptotic decay rate of H from runs of `drift_kick`.
+
+    Balanced runs with ds and ds/2, extrapolated, and one with ds on a coarser grid in
+    a smaller box. All runs share the records, so that a quadrature error, from every
+    other record, is added.
+
+    Parameters
+    ----------
+    potential : Potential
+    noise : float
+    law : GaussianLaw
+        Of the start.
+    tolerance, e_folds, s_end : float
+        See `plan_relaxation`.
+
+    Returns
+    -------
+    dict
+        Numbers by the names of the Dataset of `rate_versus_noise`.
+    """
+    model = LayDownModel(potential, noise)
+    plan = plan_relaxation(model, tolerance, e_folds, s_end)
+    coarse = _Relaxation(model, plan.grid, plan, law, 1)
+    fine = _Relaxation(model, plan.grid, plan, law, 2)
+    other = _Relaxation(model, plan.compared, plan, law, 1)
+    return {
+        **_integral(coarse, fine, other),
+        **_rates(coarse, fine, other),
+        **_description(plan, fine),
+    }
+
+
+class _Relaxation:
+    """One run: its entropy over s, and its slowest modes."""
+
+    def __init__(
+        self,
+        model: LayDownModel,
+        grid: PhaseSpaceGrid,
+        plan: Plan,
+        law: Any,
+        parts: int,
+    ) -> None:
+        ds = plan.ds / parts
+        scheme = drift_kick(model, grid, balanced=True)
+        p0, _ = density_and_law(law, grid)
+        n_steps = round(plan.s_end / plan.ds)
+        turn = min(_DENSE, n_steps // 2) * plan.ds
+        first = solve(scheme, p0, (0.0, turn), ds, record_every=parts)
+        places = plan.spacing * np.arange(N_SAVED + 1)
+        every = max(1, int(_RECORD / plan.ds)) * parts
+        rest = solve(
+            scheme, first.final, (turn, plan.s_end), ds,
+            save_at=places[places >= turn], record_every=every,
+        )  # fmt: skip
+        self.floor = rest.entropy_floor
+        self.s = np.concatenate([first.s, rest.s[1:]])
+        self.entropy = _joined(first, rest, "relative_entropy") - self.floor
+        self.loss = _joined(first, rest, "entropy_dissipation")
+        self.boundary_mass = float(
+            max(first.boundary_mass.max(), rest.boundary_mass.max())
+        )
+        self.modes = slowest_modes(rest.densities, plan.spacing, model, grid)
+        # H = ½‖x‖² as long as x is small.
+        norm = relative_norm(rest.final, model, grid)
+        self.quadratic = float(self.entropy[-1] / (0.5 * norm**2))
+
+    def integral(self, every: int = 1) -> float:
+        """∫ H ds by cubics with the slopes that the recorded dissipation gives."""
+        places = np.unique(np.append(np.arange(0, self.s.size, every), self.s.size - 1))
+        s, entropy, loss = self.s[places], self.entropy[places], self.loss[places]
+        return float(CubicHermiteSpline(s, entropy, -loss).integrate(s[0], s[-1]))
+
+    @property
+    def quadrature_error(self) -> float:
+        """Of the integral, from every other record; the rule is of order four."""
+        return abs(self.integral() - self.integral(2)) / 15
+
+
+def _joined(first: Any, rest: Any, name: str) -> Array:
+    return np.concatenate([first.series[name], rest.series[name][1:]])
+
+
+def _integral(
+    coarse: _Relaxation, fine: _Relaxation, other: _Relaxation
+) -> dict[str, float]:
+    """I = ∫₀^S H ds, its errors, and a bound of what lies beyond S."""
+    integrals = [run.integral() for run in (coarse, fine, other)]
+    step = abs(integrals[1] - integrals[0]) / 3
+    grid = _GRID_FACTOR * abs(integrals[2] - integrals[0])
+    quadrature = fine.quadrature_error
+    return {
+        "inverse_decay_rate": integrals[1] + (integrals[1] - integrals[0]) / 3,
+        "inverse_decay_rate_error": step + grid + quadrature,
+        "inverse_decay_rate_step_error": step,
+        "inverse_decay_rate_grid_error": grid,
+        "tail_bound": _tail(fine),
+    }
+
+
+def _tail(run: _Relaxation) -> float:
+    """∫_S^∞ H ds if H e^{λs} stays below its largest value in the second half."""
+    rates = [mode.rate for mode in run.modes.values() if math.isfinite(mode.rate)]
+    if not rates:
+        return math.nan
+    rate = 2 * min(rates)
+    late = run.s >= run.s[-1] / 2
+    ahead = np.exp(rate * (run.s[late] - run.s[-1]))
+    return float(np.max(run.entropy[late] * ahead)) / rate
+
+
+def _rates(
+    coarse: _Relaxation, fine: _Relaxation, other: _Relaxation
+) -> dict[str, Any]:
+    """Decay rate of H: twice that of the slowest mode, each class extrapolated."""
+    names = list(coarse.modes)
+    found = [_extrapolated(*(run.modes[name] for run in (coarse, fine, other)))
+             for name in names]  # fmt: skip
+    modes, errors = (np.array(column) for column in zip(*found, strict=True))
+    apparent = np.array([fine.modes[name].apparent for name in names])
+    slowest = _slowest(-modes.real, errors, apparent)
+    rate, error = (
+        (-modes[slowest].real, errors[slowest])
+        if slowest is not None
+        else (math.nan, math.nan)
+    )
+    line = fit_decay(fine.s, fine.entropy)
+    return {
+        "entropy_rate": 2 * rate,
+        "entropy_rate_error": 2 * error,
+        "entropy_rate_line": line.rate,
+        "entropy_rate_line_error": line.standard_error,
+        "run_rate": -modes.real,
+        "run_rate_error": errors,
+        "slowest_class": "not resolved" if slowest is None else names[slowest],
+        "quadratic_share": fine.quadratic,
+    }
+
+
+def _slowest(rates: Array, errors: Array, apparent: Array) -> int | None:
+    """The slowest of the classes; None if another one may be slower.
+
+    Next to an essential spectrum, or at a double eigenvalue, no mode may stand out in
+    a class. Unless the whole of it falls clearly faster, the rate of the other classes
+    would be no answer then.
+    """
+    known = np.isfinite(rates) & np.isfinite(errors)
+    if not known.any():
+        return None
+    slowest = int(np.argmin(np.where(known, rates, np.inf)))
+    rivals = ~known & (apparent < _CLEARLY * rates[slowest])
+    return None if rivals.any() else slowest
+
+
+def _extrapolated(
+    coarse: SlowestMode, fine: SlowestMode, other: SlowestMode
+) -> tuple[complex, float]:
+    """Eigenvalue at ds → 0 and the error of its real part: step, grid and subspace.
+
+    Frequencies are known up to multiples of 2π over the spacing of the densities.
+    """
+    change = fine.eigenvalue - coarse.eigenvalue
+    grid = _GRID_FACTOR * abs(other.rate - coarse.rate)
+    error = abs(change.real) / 3 + grid + max(coarse.error, fine.error)
+    return fine.eigenvalue + change / 3, error
+
+
+def _description(plan: Plan, fine: _Relaxation) -> dict[str, Any]:
+    return {
+        "s_end": plan.s_end,
+        "ds": plan.ds,
+        "half_width": np.array(plan.grid.half_widths),
+        "cells": np.array(plan.grid.shape),
+        "entropy_start": float(fine.entropy[0]),
+        "entropy_end": float(fine.entropy[-1]),
+        "boundary_mass": fine.boundary_mass,
+    }
