@@ -81,7 +81,7 @@ def check_bounds(report: Report) -> None:
                      "theorem 3.3 / gap": averaged[-1]})  # fmt: skip
     report.table(rows)
     report.check("hypocoercive bound / gap, at most", max(shares), "<", 1.0)
-    report.check("hypocoercive bound / gap, at least", min(shares), ">", 0.05)
+    report.check("hypocoercive bound / gap, at least", min(shares), ">", 0.02)
     report.check("hypocoercive bound / gap at A = 30", shares[-1], ">", 0.98)
     report.check("theorem 3.3 as a rate / gap, at most", max(averaged), "<", 1.0)
 

@@ -56,9 +56,9 @@ def hypocoercive_bound(
     √((2κ + ε)/(2κ − ε)). The best ε and κ are chosen (they have κ = 1). λ grows like D
     for small and falls like 1/D for large noise, as the gap does.
 
-    C ≤ √(14/3) for B = |ξ|²/2 (the norms of its truncations rise to that number),
-    1 + K/(4κ) for B = K|ξ| and 1 + √2 + √ΔB/(4κ) for quadratic B with σ1 ≠ σ2, both
-    from ‖∇²u‖ ≤ ‖(−Δ + ∇B·∇)u‖ for convex B.
+    C ≤ 1 + √2 + √ΔB/(4κ) for quadratic B and 1 + K/(4κ) for B = K|ξ|, both from
+    ‖∇²u‖ ≤ ‖(−Δ + ∇B·∇)u‖ for convex B. For B = |ξ|²/2 truncations suggest that C is
+    no larger than √(14/3), which is not used because it is not proven.
 
     Parameters
     ----------
@@ -192,8 +192,6 @@ def _regularity(unit: Potential) -> Callable[[float], float]:
     if isinstance(unit, LinearPotential):
         return lambda kappa: 1 + 1 / (4 * kappa)
     assert isinstance(unit, QuadraticPotential)
-    if unit.isotropic:
-        return lambda kappa: math.sqrt(14 / 3)
     laplacian = 1 / unit.sigma1**2 + 1 / unit.sigma2**2
     return lambda kappa: 1 + math.sqrt(2) + math.sqrt(laplacian) / (4 * kappa)
 
