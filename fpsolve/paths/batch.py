@@ -119,6 +119,7 @@ class BatchRun:
             sums=np.array(self.sums).reshape(-1, N_SUMS),
             counts=np.array(self.counts, dtype=np.int64).reshape(shape),
             outside=np.array(self.outside, dtype=np.int64),
-            start=self.start[:, :n_kept],
-            end=self.state[:, :n_kept],
+            # Copies: a view of nothing would keep the whole array alive.
+            start=self.start[:, :n_kept].copy(),
+            end=self.state[:, :n_kept].copy(),
         )

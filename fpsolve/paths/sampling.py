@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections import deque
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
@@ -29,6 +30,7 @@ from fpsolve.schedule import Schedule, make_schedule
 __all__ = ["go_on", "sample_paths"]
 
 Array = NDArray[np.float64]
+NOTHING = np.zeros(0, dtype=np.int64)
 
 
 def sample_paths(
@@ -200,7 +202,7 @@ def run_here(
             if not batches:
                 batches.append(run.result())
             raise
-        batches.append(run.result())
+        collect(batches, run.result())
 
 
 def run_elsewhere(
@@ -216,7 +218,7 @@ def run_elsewhere(
             f"`client` must have a method submit(f, *args), got {client!r}; pass a "
             "dask.distributed client or an executor."
         )
-    futures = []
+    futures: deque[tuple[int, Any]] = deque()
     for first, n in batches_of(ensemble.n_paths):
         # Given points travel with their own batch only.
         given = isinstance(ensemble.law, GivenStart) or states is not None
@@ -226,9 +228,20 @@ def run_elsewhere(
         alone = replace(ensemble, law=None) if given else ensemble
         futures.append((n, client.submit(run_batch, alone, first, n, state)))
     n_steps = ensemble.schedule.n_steps - ensemble.first_step
-    for n, future in futures:
-        batches.append(future.result())
+    while futures:
+        n, future = futures.popleft()
+        collect(batches, future.result())
         meter(n * n_steps)
+
+
+def collect(batches: list[Batch], batch: Batch) -> None:
+    """Append a batch; histograms are added up at once, each is as large as the grid."""
+    if batches and batch.counts.size:
+        total = batches[0]
+        total.counts[...] += batch.counts
+        total.outside[...] += batch.outside
+        batch = batch._replace(counts=NOTHING, outside=NOTHING)
+    batches.append(batch)
 
 
 def part(states: Array | None, first: int, n: int) -> Array | None:
@@ -272,17 +285,13 @@ def gathered(
 ) -> Paths:
     """The paths of all batches as one result."""
     schedule = ensemble.schedule
-    counts, outside = batches[0].counts[:0], batches[0].outside[:0]
-    if ensemble.grid is not None:
-        counts = np.sum([batch.counts for batch in batches], axis=0)
-        outside = np.sum([batch.outside for batch in batches], axis=0)
     return Paths(
         ensemble=ensemble,
         s=np.array([schedule.s(step) for step in schedule.saves]),
         states=np.concatenate([batch.states for batch in batches], axis=2),
         sums=np.sum([batch.sums for batch in batches], axis=0),
-        counts=counts,
-        outside=outside,
+        counts=batches[0].counts,
+        outside=batches[0].outside,
         start=np.concatenate([batch.start for batch in batches], axis=1),
         end=np.concatenate([batch.end for batch in batches], axis=1),
         provenance=provenance,
