@@ -8,6 +8,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import fields, is_dataclass
 from pathlib import Path
 from typing import Any
+from zipfile import BadZipFile
 
 import numpy as np
 from numpy.typing import NDArray
@@ -61,10 +62,8 @@ class CaseStore:
             # Opened here: a damaged archive would leave the file open.
             with path.open("rb") as raw, np.load(raw, allow_pickle=False) as file:
                 return {name.removeprefix(_VALUE): file[name] for name in file.files}
-        except FileNotFoundError:
-            return None
-        # A damaged archive raises whatever zip and numpy come across.
-        except Exception:
+        # None is kept yet, or what is there is damaged: the case is computed again.
+        except (OSError, EOFError, ValueError, BadZipFile):
             return None
 
     def write(self, arguments: Mapping[str, Any], values: Mapping[str, Any]) -> None:
