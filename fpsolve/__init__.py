@@ -12,7 +12,7 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from fpsolve import diagnostics, errors, initial, paths, plotting, studies
+    from fpsolve import diagnostics, errors, initial, interop, paths, plotting, studies
     from fpsolve.curves import (
         EllipticNozzle,
         FixedBelt,
@@ -37,9 +37,11 @@ if TYPE_CHECKING:
         SteadyStateError,
     )
     from fpsolve.grids import PhaseSpaceGrid
+    from fpsolve.interop import from_pde_field, to_pde_field
     from fpsolve.io import load
     from fpsolve.models import LayDownModel
     from fpsolve.paths import Paths, sample_paths
+    from fpsolve.planes import PlaneGrid
     from fpsolve.potentials import (
         CallablePotential,
         FreePotential,
@@ -49,6 +51,8 @@ if TYPE_CHECKING:
         QuadraticPotential,
     )
     from fpsolve.process import Process
+    from fpsolve.reduced.energy import EnergyProcess
+    from fpsolve.reduced.hydrodynamic import HydrodynamicLimit, OrnsteinUhlenbeckLimit
     from fpsolve.schemes import drift_kick, semi_lagrangian
     from fpsolve.solution import Solution
     from fpsolve.solve import solve
@@ -73,14 +77,18 @@ _MODULES = {
         "SteadyStateError"
     ),
     "fpsolve.grids": "PhaseSpaceGrid",
+    "fpsolve.interop": "from_pde_field to_pde_field",
     "fpsolve.io": "load",
     "fpsolve.models": "LayDownModel",
     "fpsolve.paths": "Paths sample_paths",
+    "fpsolve.planes": "PlaneGrid",
     "fpsolve.potentials": (
         "CallablePotential FreePotential IsotropicPotential LinearPotential "
         "PowerPotential QuadraticPotential"
     ),
     "fpsolve.process": "Process",
+    "fpsolve.reduced.energy": "EnergyProcess",
+    "fpsolve.reduced.hydrodynamic": "HydrodynamicLimit OrnsteinUhlenbeckLimit",
     "fpsolve.schemes": "drift_kick semi_lagrangian",
     "fpsolve.solution": "Solution",
     "fpsolve.solve": "solve",
@@ -93,7 +101,9 @@ _MODULES = {
     "fpsolve.steady_state": "SteadyState steady_state",
     "fpsolve.suggestions": "suggest_grid suggest_step",
 }
-_SUBMODULES = ("diagnostics", "errors", "initial", "paths", "plotting", "studies")
+_SUBMODULES = (
+    "diagnostics", "errors", "initial", "interop", "paths", "plotting", "studies",
+)  # fmt: skip
 _HOME = {name: home for home, names in _MODULES.items() for name in names.split()}
 
 __all__ = [
@@ -101,11 +111,13 @@ __all__ = [
     "ConfigurationError",
     "DomainTooSmallError",
     "EllipticNozzle",
+    "EnergyProcess",
     "FileFormatError",
     "FixedBelt",
     "FpsolveError",
     "FreePotential",
     "GridMismatchError",
+    "HydrodynamicLimit",
     "IsotropicPotential",
     "LayDownModel",
     "LinearPotential",
@@ -117,9 +129,11 @@ __all__ = [
     "NonFiniteDensityError",
     "NonFinitePathError",
     "OptimalNoise",
+    "OrnsteinUhlenbeckLimit",
     "OscillatingNozzle",
     "Paths",
     "PhaseSpaceGrid",
+    "PlaneGrid",
     "PowerPotential",
     "Process",
     "QuadraticPotential",
@@ -136,7 +150,9 @@ __all__ = [
     "diagnostics",
     "drift_kick",
     "errors",
+    "from_pde_field",
     "initial",
+    "interop",
     "load",
     "optimal_noise",
     "paths",
@@ -152,6 +168,7 @@ __all__ = [
     "studies",
     "suggest_grid",
     "suggest_step",
+    "to_pde_field",
 ]
 
 

@@ -17,8 +17,10 @@ SCRIPTS = (
     "spectral_reference.py",
     "decay_rate_is_the_gap.py",
     "rate_asymptotes.py",
+    "large_noise_limit.py",
     "performance/run.py",
     "performance/paths.py",
+    "performance/reduced.py",
 )
 
 

@@ -11,7 +11,9 @@ from typing import Annotated
 import typer
 
 from fpsolve.cli.check import check
+from fpsolve.cli.energy import energy
 from fpsolve.cli.info import info
+from fpsolve.cli.limits import limits
 from fpsolve.cli.paths import paths
 from fpsolve.cli.plot import plot
 from fpsolve.cli.rate import rate
@@ -34,6 +36,8 @@ app.command(epilog="Example: fpsolve paths --n-paths 10000 --out results")(paths
 app.command(epilog="Example: fpsolve check --n-paths 100000 --out results")(check)
 app.command(epilog="Example: fpsolve rate --quick --out results")(rate)
 app.command(epilog="Example: fpsolve spectrum --potential linear --noise 0.8")(spectrum)
+app.command(epilog="Example: fpsolve energy --noise 0.3 --passage 0.1 0.5")(energy)
+app.command(epilog="Example: fpsolve limits small-noise --quick")(limits)
 app.command(epilog="Example: fpsolve plot results/laydown.nc --movie")(plot)
 app.command(epilog="Example: fpsolve info")(info)
 

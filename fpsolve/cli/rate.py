@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     from fpsolve.potentials import Potential
 
-__all__ = ["rate"]
+__all__ = ["case_bar", "rate", "save_figure"]
 
 Potentials = Annotated[
     list[str] | None,
@@ -191,15 +191,15 @@ def _study(
     from fpsolve.studies.rates.rate_versus_noise import rate_versus_noise
 
     store = None if potential.kind in ("callable", "custom") else out / "rate-cases"
-    with _bar(f"B = {potential.formula}") as report:
+    with case_bar(f"B = {potential.formula}") as report:
         return rate_versus_noise(
             potential, noises, parts=parts, directory=store, progress=report, **options
         )
 
 
 @contextmanager
-def _bar(title: str) -> Iterator[Callable[[int, int, Any], None]]:
-    """A bar that counts cases; silent outside of a terminal."""
+def case_bar(title: str) -> Iterator[Callable[[int, int, Any], None]]:
+    """Show a bar that counts cases; silent outside of a terminal."""
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
@@ -243,17 +243,18 @@ def _draw(studies: list[xr.Dataset], out: Path) -> None:
     )
 
     if all("inverse_decay_rate" in one for one in studies):
-        _save(plot_inverse_decay_rate(studies), out / "rate-integral.png")
+        save_figure(plot_inverse_decay_rate(studies), out / "rate-integral.png")
     for one in studies:
         kind = json.loads(one.attrs["potential"])["kind"]
         if "gap" in one or "branch_rate" in one:
-            _save(plot_rates(one), out / f"rate-{kind}.png")
+            save_figure(plot_rates(one), out / f"rate-{kind}.png")
         if "asymptotic_variance" in one:
             path = out / f"rate-{kind}-variance.png"
-            _save(plot_asymptotic_variance(one), path)
+            save_figure(plot_asymptotic_variance(one), path)
 
 
-def _save(figure: Any, path: Path) -> None:
+def save_figure(figure: Any, path: Path) -> None:
+    """Write a figure as PNG, whole or not at all, and print where it is."""
     from fpsolve.io.atomic import atomic_path
     from fpsolve.plotting.style import RESOLUTION, paper_style
 

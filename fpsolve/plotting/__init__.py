@@ -24,12 +24,23 @@ from fpsolve.plotting.trajectories import (
 
 if TYPE_CHECKING:
     from fpsolve.plotting.comparison import plot_cross_check
+    from fpsolve.plotting.energy import (
+        plot_energy_coefficients,
+        plot_energy_eigenfunctions,
+        plot_energy_law,
+        plot_orbits,
+    )
     from fpsolve.plotting.ergodicity import plot_ergodic_averages
+    from fpsolve.plotting.limits import plot_large_noise
     from fpsolve.plotting.rates import (
         plot_asymptotic_variance,
         plot_inverse_decay_rate,
         plot_rates,
         plot_spectrum,
+    )
+    from fpsolve.plotting.small_noise import (
+        plot_small_noise,
+        plot_small_noise_spectrum,
     )
 
 __all__ = [
@@ -37,16 +48,23 @@ __all__ = [
     "plot_angle",
     "plot_asymptotic_variance",
     "plot_cross_check",
+    "plot_energy_coefficients",
+    "plot_energy_eigenfunctions",
+    "plot_energy_law",
     "plot_ensemble",
     "plot_entropy",
     "plot_ergodic_averages",
     "plot_fibre",
     "plot_inverse_decay_rate",
+    "plot_large_noise",
     "plot_marginals",
     "plot_moments",
     "plot_nozzles",
+    "plot_orbits",
     "plot_overview",
     "plot_rates",
+    "plot_small_noise",
+    "plot_small_noise_spectrum",
     "plot_spectrum",
     "plot_trajectories",
     "save_figures",
@@ -56,9 +74,16 @@ __all__ = [
 _STUDIES = {
     "plot_asymptotic_variance": "fpsolve.plotting.rates",
     "plot_cross_check": "fpsolve.plotting.comparison",
+    "plot_energy_coefficients": "fpsolve.plotting.energy",
+    "plot_energy_eigenfunctions": "fpsolve.plotting.energy",
+    "plot_energy_law": "fpsolve.plotting.energy",
     "plot_ergodic_averages": "fpsolve.plotting.ergodicity",
     "plot_inverse_decay_rate": "fpsolve.plotting.rates",
+    "plot_large_noise": "fpsolve.plotting.limits",
+    "plot_orbits": "fpsolve.plotting.energy",
     "plot_rates": "fpsolve.plotting.rates",
+    "plot_small_noise": "fpsolve.plotting.small_noise",
+    "plot_small_noise_spectrum": "fpsolve.plotting.small_noise",
     "plot_spectrum": "fpsolve.plotting.rates",
 }
 

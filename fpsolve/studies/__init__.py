@@ -20,6 +20,14 @@ if TYPE_CHECKING:
         ergodic_averages,
         fit_ergodic_error,
     )
+    from fpsolve.studies.limits.energy_sectors import small_noise_spectrum
+    from fpsolve.studies.limits.large_noise import large_noise_limit
+    from fpsolve.studies.limits.orders import (
+        FittedOrder,
+        fitted_order,
+        observed_orders,
+    )
+    from fpsolve.studies.limits.small_noise import small_noise_limit
     from fpsolve.studies.rates.poisson import asymptotic_variances
     from fpsolve.studies.rates.rate_versus_noise import rate_versus_noise
     from fpsolve.studies.rates.sweep import Case, sweep
@@ -29,12 +37,18 @@ __all__ = [
     "Case",
     "CrossCheck",
     "ErgodicFit",
+    "FittedOrder",
     "asymptotic_variances",
     "compare",
     "cross_check",
     "ergodic_averages",
     "fit_ergodic_error",
+    "fitted_order",
+    "large_noise_limit",
+    "observed_orders",
     "rate_versus_noise",
+    "small_noise_limit",
+    "small_noise_spectrum",
     "sweep",
 ]
 
@@ -46,14 +60,22 @@ _HOME = {
     "ErgodicFit": "ergodicity",
     "ergodic_averages": "ergodicity",
     "fit_ergodic_error": "ergodicity",
+    "FittedOrder": "limits.orders",
+    "fitted_order": "limits.orders",
+    "large_noise_limit": "limits.large_noise",
+    "observed_orders": "limits.orders",
     "Case": "rates.sweep",
     "asymptotic_variances": "rates.poisson",
     "rate_versus_noise": "rates.rate_versus_noise",
+    "small_noise_limit": "limits.small_noise",
+    "small_noise_spectrum": "limits.energy_sectors",
     "sweep": "rates.sweep",
 }
 
 
 def __getattr__(name: str) -> Any:
+    if name == "limits":
+        return importlib.import_module(f"{__name__}.limits")
     if name in _HOME:
         value = getattr(importlib.import_module(f"{__name__}.{_HOME[name]}"), name)
         globals()[name] = value

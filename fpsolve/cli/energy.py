@@ -1,0 +1,145 @@
+"""`fpsolve energy`: the small-noise limit in numbers and figures."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from fpsolve.cli.errors import reported_errors
+from fpsolve.cli.potentials import Exponent, Sigma1, Sigma2, Slope, make_potential
+from fpsolve.cli.run import NoFigures, Out
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from fpsolve.reduced.energy import EnergyProcess
+
+__all__ = ["energy"]
+
+Kind = Annotated[
+    str,
+    typer.Option("--potential", metavar="KIND", help="quadratic, linear or power."),
+]
+Noise = Annotated[float, typer.Option(metavar="A", help="Noise amplitude.")]
+Energies = Annotated[
+    int, typer.Option("--energies", min=1, help="Rows of the table, from 0 to g_max.")
+]
+Count = Annotated[
+    int, typer.Option("--count", "-n", min=1, help="Eigenvalues of each family.")
+]
+Passage = Annotated[
+    tuple[float, float] | None,
+    typer.Option(
+        metavar="FROM TARGET",
+        help="Expected length of fibre until the energy has come from one to another.",
+    ),
+]
+
+_COLUMNS = {
+    "g": "g",
+    "r_min": "r_min",
+    "r_max": "r_max",
+    "period": "period S",
+    "variance": "σ²(g)",
+    "stationary_density": "density S/∫S",
+}
+
+
+def energy(
+    potential: Kind = "quadratic",
+    noise: Noise = 1.0,
+    energies: Energies = 10,
+    count: Count = 4,
+    passage: Passage = None,
+    sigma1: Sigma1 = 1.0,
+    sigma2: Sigma2 = None,
+    slope: Slope = 1.0,
+    exponent: Exponent = 4.0,
+    out: Out = Path("results"),
+    no_figures: NoFigures = False,
+) -> None:
+    """Compute the energy process of little noise on a belt at rest.
+
+    Prints the circle, the coefficients of the averaged equation (15) and the decay
+    rates of (16), with errors, and writes them and figures. The energy is
+    G = r exp(-B(r)) sin β, β the angle between fibre and radius.
+    """
+    with reported_errors():
+        from fpsolve.io.energy import tables_dataset
+        from fpsolve.reduced.energy import EnergyProcess
+
+        chosen = make_potential(potential, sigma1, sigma2, slope, exponent)
+        process = EnergyProcess(chosen, noise)
+        walk = None if passage is None else _passage(process, *passage)
+        tables = tables_dataset(process, energies, count)
+        _print(process, tables)
+        if walk is not None:
+            typer.echo(walk)
+        _write(process, tables, out, not no_figures)
+
+
+def _passage(process: EnergyProcess, start: float, target: float) -> str:
+    found = process.passage(target)
+    mean, variance = float(found.mean(start)), float(found.variance(start))
+    ends = f"|G| from {start:g} to {target:g}: expected length"
+    if not mean < float("inf"):
+        return f"{ends} infinite, the circle is never reached"
+    return f"{ends} {mean:.6g}, standard deviation {variance**0.5:.4g}"
+
+
+def _print(process: EnergyProcess, tables: xr.Dataset) -> None:
+    from rich import box
+    from rich.console import Console
+    from rich.table import Table
+
+    console = Console(highlight=False, markup=False)
+    console.print(
+        f"energy process, B = {process.potential.formula}, A = {process.noise:g}: "
+        f"circle r = {process.radius:.6g}, g_max = {process.g_max:.6g}"
+    )
+    table = Table(box=box.SIMPLE_HEAD)
+    for title in _COLUMNS.values():
+        table.add_column(title, justify="right")
+    for row in zip(*(tables[name].to_numpy() for name in _COLUMNS), strict=True):
+        table.add_row(*(f"{value:.5g}" for value in row))
+    console.print(table)
+    for family, meaning in (("even", "|G|"), ("odd", "sign of G")):
+        one = tables.sel(family=family)
+        console.print(f"decay rates, {family} family ({meaning}):")
+        pairs = zip(one["eigenvalue"].to_numpy(), one["eigenvalue_error"].to_numpy(),
+                    strict=True)  # fmt: skip
+        for value, error in pairs:
+            console.print(f"  {value:.10g} ± {error:.0e}" if error else "  0 exactly")
+
+
+def _write(
+    process: EnergyProcess, tables: xr.Dataset, out: Path, figures: bool
+) -> None:
+    from fpsolve.io.atomic import atomic_path
+
+    out.mkdir(parents=True, exist_ok=True)
+    numbers = out / "energy.nc"
+    with atomic_path(numbers) as draft:
+        tables.to_netcdf(draft, engine="h5netcdf")
+    typer.echo(numbers)
+    if figures:
+        _draw(process, out)
+
+
+def _draw(process: EnergyProcess, out: Path) -> None:
+    from fpsolve.io.atomic import atomic_path
+    from fpsolve.plotting import energy as plotting
+    from fpsolve.plotting.style import RESOLUTION, paper_style
+
+    drawings = {
+        "orbits": plotting.plot_orbits,
+        "coefficients": plotting.plot_energy_coefficients,
+        "eigenfunctions": plotting.plot_energy_eigenfunctions,
+    }
+    for name, plot in drawings.items():
+        path = out / f"energy-{name}.png"
+        with paper_style(), atomic_path(path) as draft:
+            plot(process).savefig(draft, dpi=RESOLUTION)
+        typer.echo(path)

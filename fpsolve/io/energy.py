@@ -1,0 +1,138 @@
+"""The energy process as labelled `xarray.Dataset`: a solution, and its tables."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from fpsolve._checks import check_integer
+from fpsolve.io.attributes import labels, to_json
+from fpsolve.provenance import versions
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from fpsolve.reduced.energy import EnergyProcess, EnergySolution
+
+__all__ = ["energy_dataset", "tables_dataset"]
+
+_SERIES = {
+    "mass": "mass ∫ p dg",
+    "relative_entropy": "relative entropy to the stationary law S/∫S",
+    "entropy_dissipation": "entropy dissipation −dH/ds of the discrete equation",
+    "minimum": "smallest cell mass",
+    "saved_l1": "L¹ norm of p",
+}
+_TABLES = {
+    "r_min": "smallest distance r on the orbit",
+    "r_max": "largest distance r on the orbit",
+    "period": "period S(g)",
+    "action": "action J(g), J′ = −g S",
+    "variance": "variance σ²(g) = A² J/S per unit of s",
+    "drift": "drift −A²g/2 per unit of s",
+    "stationary_density": "stationary density S/∫S of |G|",
+}
+_FAMILIES = ("even", "odd")
+
+
+def energy_dataset(solution: EnergySolution) -> xr.Dataset:
+    """Densities (s, g), series over s_step, and their estimated errors.
+
+    Parameters
+    ----------
+    solution : EnergySolution
+
+    Returns
+    -------
+    xarray.Dataset
+        `g` are the centres of the cells (stationary means), `face` their ends.
+    """
+    import xarray as xr
+
+    grid = solution.grid
+    variables: dict[str, Any] = {
+        "density": (("s", "g"), solution.densities, labels("cell means of p(g, s)")),
+        "cell_mass": (("s", "g"), solution.masses, labels("masses of the cells")),
+        "stationary_mass": ("g", grid.equilibrium, labels("stationary cell masses")),
+    }
+    for name, values in solution.series.items():
+        if name != "s":
+            variables[name] = ("s_step", values, labels(_SERIES[name]))
+    for name, values in (solution.errors or {}).items():
+        dimension = "s" if name == "saved_l1" else "s_step"
+        meaning = labels(f"estimated error in ds of: {_SERIES[name]}")
+        variables[f"{name}_error"] = (dimension, values, meaning)
+    coordinates = {
+        "s": ("s", solution.saved_s, labels("arclength s of the saved densities")),
+        "s_step": ("s_step", solution.s, labels("arclength s of the recorded steps")),
+        "g": ("g", grid.centres, labels("mean energy of the cell, stationary law")),
+        "face": ("face", grid.faces, labels("ends of the cells")),
+    }
+    attributes = {
+        "title": "law of the energy process of fibre lay-down",
+        **_attributes(solution.process),
+        "n_cells": grid.n_cells,
+        "signed": int(grid.signed),
+        "method": solution.method,
+        "ds": solution.ds,
+    }
+    return xr.Dataset(variables, coordinates, attributes)
+
+
+def tables_dataset(
+    process: EnergyProcess, n_energies: int, n_eigenvalues: int
+) -> xr.Dataset:
+    """Coefficients over g in (0, g_max], and the eigenvalues of both families.
+
+    Parameters
+    ----------
+    process : EnergyProcess
+    n_energies : int
+        Energies g_max k/n, k = 1, ..., n; at g = 0 the period is infinite.
+    n_eigenvalues : int
+        Of each family.
+
+    Returns
+    -------
+    xarray.Dataset
+    """
+    import xarray as xr
+
+    n_energies = check_integer("n_energies", n_energies, at_least=1)
+    g = process.g_max * np.arange(1, n_energies + 1) / n_energies
+    r_min, r_max = process.turning_points(g)
+    tables = {"r_min": r_min, "r_max": r_max} | {
+        name: getattr(process, name)(g) for name in _TABLES if name[:2] != "r_"
+    }
+    spectra = [process.spectrum(n_eigenvalues, family) for family in _FAMILIES]
+    variables: dict[str, Any] = {
+        name: ("g", values, labels(_TABLES[name])) for name, values in tables.items()
+    }
+    rates = np.array([found.eigenvalues for found in spectra])
+    errors = np.array([found.errors for found in spectra])
+    where = ("family", "mode")
+    variables["eigenvalue"] = (where, rates, labels("decay rate of (16)"))
+    variables["eigenvalue_error"] = (where, errors, labels("error of the decay rate"))
+    coordinates = {
+        "g": ("g", g, labels("energy G = r exp(−B(r)) sin β")),
+        "family": ("family", np.array(_FAMILIES, dtype=object)),
+        "mode": ("mode", np.arange(n_eigenvalues)),
+    }
+    attributes = {
+        "title": "energy process of fibre lay-down",
+        **_attributes(process),
+    }
+    return xr.Dataset(variables, coordinates, attributes)
+
+
+def _attributes(process: EnergyProcess) -> dict[str, Any]:
+    return {
+        "equation": "dG = −(A²/2) G ds + σ(G) dW, σ² = A² J(G)/S(G)",
+        "potential": to_json(process.potential.to_dict()),
+        "formula": process.potential.formula,
+        "noise": process.noise,
+        "radius": process.radius,
+        "g_max": process.g_max,
+        "versions": to_json(versions()),
+    }

@@ -1,0 +1,110 @@
+"""The law of the energy at saved arclengths, and series over the steps."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fpsolve.reduced.energy.grid import EnergyGrid
+
+if TYPE_CHECKING:
+    import xarray
+
+__all__ = ["EnergySolution"]
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class EnergySolution:
+    """Densities p(g, s) of (16) that were saved, and series over every recorded step.
+
+    Attributes
+    ----------
+    process : EnergyProcess
+    grid : EnergyGrid
+    method : str
+    ds : float
+        Step; with extrapolation the longer of the two.
+    series : dict of ndarray, each (n_recorded,)
+        "s", "mass", "relative_entropy" (to S/∫S), "entropy_dissipation", "minimum".
+    errors : dict of ndarray, or None
+        Estimates in ds of an extrapolated run: "relative_entropy",
+        "entropy_dissipation" (n_recorded,), "saved_l1" (n_saved,).
+    saved_s : ndarray, shape (n_saved,)
+    masses : ndarray, shape (n_saved, n)
+        Masses of the n cells.
+    """
+
+    process: Any
+    grid: EnergyGrid
+    method: str
+    ds: float
+    series: Mapping[str, Array]
+    errors: Mapping[str, Array] | None
+    saved_s: Array
+    masses: Array
+
+    @property
+    def s(self) -> Array:
+        """Recorded arclengths."""
+        return self.series["s"]
+
+    @property
+    def relative_entropy(self) -> Array:
+        """H of the cell masses relative to the stationary law, at `s`."""
+        return self.series["relative_entropy"]
+
+    @property
+    def densities(self) -> Array:
+        """Cell means of p(g, s), shape (n_saved, n_cells)."""
+        return self.masses / self.grid.widths
+
+    def density(self, s: float) -> Array:
+        """Cell means of p(g) at a saved s, shape (n_cells,).
+
+        Raises
+        ------
+        ValueError
+            If nothing was saved at s.
+        """
+        return np.asarray(self.densities[self._index(s)])
+
+    def mass(self, s: float) -> Array:
+        """Cell masses at a saved s, shape (n_cells,); ValueError if none were saved."""
+        return np.asarray(self.masses[self._index(s)])
+
+    def mean(self, s: float) -> float:
+        """E G at a saved s; of |G| on an unsigned grid."""
+        return float(self.mass(s) @ self.grid.centres)
+
+    def distribution(self, s: float) -> Array:
+        """P(G <= face) at a saved s for the faces of the grid, (n_cells + 1,)."""
+        return np.concatenate([[0.0], np.cumsum(self.mass(s))])
+
+    def to_xarray(self) -> xarray.Dataset:
+        """Labelled Dataset: density (s, g), series over step, parameters."""
+        from fpsolve.io.energy import energy_dataset
+
+        return energy_dataset(self)
+
+    def __repr__(self) -> str:
+        return (
+            f"EnergySolution({self.method}, ds = {self.ds:g}, s = {self.s[-1]:g}, "
+            f"{self.grid!r}, {len(self.saved_s)} saved)"
+        )
+
+    def _index(self, s: float) -> int:
+        if self.saved_s.size:
+            nearest = int(np.argmin(np.abs(self.saved_s - s)))
+            if abs(self.saved_s[nearest] - s) <= 1e-9 * max(1.0, abs(s)):
+                return nearest
+        known = ", ".join(f"{value:g}" for value in self.saved_s) or "none"
+        raise ValueError(
+            f"`s` must be one of the saved values {known}, got {s:g}; add it to "
+            "`save_at` of the run."
+        )

@@ -1,0 +1,286 @@
+"""∂ₛ𝒫 = ∇·(ε∇ + ε∇B − v e₁)𝒫: the limit of large noise as an object."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from fpsolve import diagnostics
+from fpsolve.errors import DomainTooSmallError
+from fpsolve.grids import PhaseSpaceGrid
+from fpsolve.models import LayDownModel
+from fpsolve.planes import PlaneGrid, plane_of
+from fpsolve.potentials import QuadraticPotential
+from fpsolve.progress import ProgressCallback
+from fpsolve.reduced.hydrodynamic import reconstruction, run, sampling
+from fpsolve.reduced.hydrodynamic.effective_potential import check_limit
+from fpsolve.reduced.hydrodynamic.initial_layer import InitialLayer
+from fpsolve.reduced.hydrodynamic.ornstein_uhlenbeck import OrnsteinUhlenbeckLimit
+from fpsolve.reduced.hydrodynamic.scharfetter_gummel import generator, gibbs_masses
+from fpsolve.reduced.hydrodynamic.solution import (
+    HydrodynamicSolution,
+    HydrodynamicSteadyState,
+)
+from fpsolve.reduced.hydrodynamic.spectrum import HydrodynamicSpectrum, spectrum_of
+
+__all__ = ["HydrodynamicLimit"]
+
+Array = NDArray[np.float64]
+Start = ArrayLike | Callable[..., ArrayLike]
+
+
+class HydrodynamicLimit:
+    """∂ₛ𝒫 = ∇·(ε∇ + ε∇B − v e₁)𝒫, ε = 1/A²: the model for large noise.
+
+    The angle forgets itself over the arclength 2/A², and what is left of p is its
+    plane density, p ≈ 𝒫/2π. The belt is a constant force, so that the whole drift is
+    −ε∇Φ with Φ = B − v ξ1/ε, and 𝒫_S = c exp(−B + v ξ1/ε) is stationary, in detailed
+    balance. The paper prints −v ξ1/ε; its own remark 3.7, with the mean (A²v, 0),
+    needs the plus.
+
+    Parameters
+    ----------
+    model : LayDownModel
+        Any potential that confines, positive noise, FixedBelt or MovingBelt.
+
+    Attributes
+    ----------
+    model : LayDownModel
+    epsilon : float
+        ε = 1/A².
+
+    Raises
+    ------
+    ValueError
+        If the noise is zero, the curve does not move at constant speed, or
+        exp(−B + v ξ1/ε) is not integrable: a potential that does not confine, or
+        B = K‖ξ‖ and v >= K ε.
+    TypeError
+        If `model` is something else.
+
+    References
+    ----------
+    [BGKMW08]_; [KMW09]_, section 3.1.2, equations (17) to (21).
+    """
+
+    def __init__(self, model: LayDownModel) -> None:
+        self._phi = check_limit(model)
+        self.model = model
+        self.epsilon = 1.0 / model.noise**2
+
+    def __repr__(self) -> str:
+        return f"HydrodynamicLimit({self.model!r})"
+
+    def effective_potential(self, xi1: ArrayLike, xi2: ArrayLike) -> Array:
+        """Φ = B − v ξ1/ε, in the broadcast shape of the arguments."""
+        return self._phi.value(xi1, xi2)
+
+    def drift(self, xi1: ArrayLike, xi2: ArrayLike) -> tuple[Array, Array]:
+        """−ε∇B + v e₁, two arrays in the broadcast shape."""
+        slope1, slope2 = self._phi.gradient(xi1, xi2)
+        return -self.epsilon * slope1, -self.epsilon * slope2
+
+    def equilibrium(self, xi1: ArrayLike, xi2: ArrayLike) -> Array:
+        """𝒫_S = c exp(−B + v ξ1/ε), normalised on the plane.
+
+        On a moving belt it depends on the noise.
+        """
+        return self._phi.density(xi1, xi2)
+
+    def generator(self, grid: PlaneGrid | PhaseSpaceGrid) -> Any:
+        """Q of dm/ds = Q m for cell masses m, a sparse (n1 n2, n1 n2) array.
+
+        See `scharfetter_gummel.generator` for what is exact.
+        """
+        plane = plane_of(grid)
+        return generator(self._phi.value(*plane.mesh()), plane.spacing, self.epsilon)
+
+    def steady_state(
+        self, grid: PlaneGrid | PhaseSpaceGrid, *, boundary_tolerance: float = 1e-3
+    ) -> HydrodynamicSteadyState:
+        """𝒫_S on a grid: the stationary density of the discrete equation, exactly.
+
+        It is known in closed form; what is computed is its residual.
+
+        Raises
+        ------
+        DomainTooSmallError
+            If more than `boundary_tolerance` of the mass lies in the outermost cells.
+        """
+        plane = plane_of(grid)
+        masses = gibbs_masses(self._phi.value(*plane.mesh()))
+        residual = float(np.abs(self.generator(plane) @ masses.ravel()).sum())
+        share = diagnostics.ring_share(masses)
+        if not share <= boundary_tolerance:
+            raise DomainTooSmallError(
+                share, plane.half_width, tolerance=boundary_tolerance
+            )
+        return HydrodynamicSteadyState(masses / plane.cell_area, residual, share, plane)
+
+    def solve(
+        self,
+        P0: Start,
+        s_span: tuple[float, float],
+        ds: float,
+        *,
+        grid: PlaneGrid | PhaseSpaceGrid,
+        method: str = "backward_euler",
+        save_at: Iterable[float] | None = None,
+        extrapolate: bool = False,
+        record_every: int = 1,
+        progress: bool | ProgressCallback = False,
+        boundary_tolerance: float = 1e-3,
+    ) -> HydrodynamicSolution:
+        """𝒫(ξ, s) from 𝒫0 by finite volumes in ξ and implicit steps in s.
+
+        Exact: the mass, and 𝒫_S stays. The fluxes are those of Scharfetter and
+        Gummel, of order 2 in the cell width. "backward_euler" is of order 1 in ds,
+        keeps densities positive and lets the entropy fall at every step whatever ds;
+        "sdirk2" is L-stable and of order 2, and may undershoot after a rough start.
+        `extrapolate` raises either order by one.
+
+        Parameters
+        ----------
+        P0 : ndarray, shape (n1, n2), or callable
+            Density at the start; a callable ``P0(xi1, xi2)`` is normalised on the
+            grid. An array keeps its mass. It may be negative somewhere, as a start
+            corrected for the initial layer can be.
+        s_span : (float, float)
+        ds : float
+            Step; must divide the span.
+        grid : PlaneGrid or PhaseSpaceGrid
+            Cells; of a phase-space grid those of its plane. The box is closed.
+        method : {"backward_euler", "sdirk2"}
+        save_at : iterable of float, optional
+            Where to keep the density; by default at the end.
+        extrapolate : bool
+            Run with ds and ds/2, combine both (Richardson) and attach error
+            estimates. The result need not be positive.
+        record_every : int
+            Steps between two records.
+        progress : bool or callable
+            Show a bar, or call with (steps done, steps in all, s).
+        boundary_tolerance : float
+            Largest share of mass in the outermost cells.
+
+        Raises
+        ------
+        ValueError, GridMismatchError
+            For arguments that do not fit.
+        DomainTooSmallError
+            If mass reaches the boundary of the box; it carries the `solution`.
+        """
+        plane = plane_of(grid)
+        arguments = run.Arguments(
+            start=run.checked_start(P0, plane),
+            s_span=s_span,
+            ds=ds,
+            method=method,
+            save_at=save_at,
+            extrapolate=extrapolate,
+            record_every=record_every,
+            boundary_tolerance=boundary_tolerance,
+        )
+        return run.solve(self, plane, arguments, progress)
+
+    def spectrum(
+        self, grid: PlaneGrid | PhaseSpaceGrid, n_eigenvalues: int = 6
+    ) -> HydrodynamicSpectrum:
+        """The slowest decay rates on a grid, with errors from half its cells.
+
+        Eigenvalues of the symmetrised generator, all real, of order 2 in the cell
+        width. They also depend on the box: modes of B = K‖ξ‖ reach far, and above
+        εK²/4, where its essential spectrum begins, eigenvalues are those of the box.
+        Exact values: ε(k/σ1² + l/σ2²) for the quadratic potential on any belt, and
+        the gap 2εK²/9 of the linear one on a belt at rest.
+
+        Raises
+        ------
+        ValueError
+            If the grid is too coarse for that many.
+        """
+        return spectrum_of(self, plane_of(grid), n_eigenvalues)
+
+    def gap(self, grid: PlaneGrid | PhaseSpaceGrid | None = None) -> float:
+        """Rate at which 𝒫 tends to 𝒫_S: the smallest positive eigenvalue.
+
+        ε/max(σ1², σ2²) exactly for a quadratic potential, where no grid is needed;
+        otherwise that of `spectrum(grid)`, which also has its error.
+
+        Raises
+        ------
+        ValueError
+            If a grid is needed.
+        """
+        if grid is not None:
+            return self.spectrum(grid, 2).gap
+        if not isinstance(self.model.potential, QuadraticPotential):
+            raise ValueError(
+                "`grid` must be given for a potential that is not quadratic, got None "
+                f"with {self.model.potential!r}."
+            )
+        return float(OrnsteinUhlenbeckLimit(self.model).rates.min())
+
+    def sample(
+        self,
+        n_paths: int,
+        s_end: float,
+        ds: float | None = None,
+        *,
+        seed: int | np.random.SeedSequence,
+        initial: Any,
+        save_at: Iterable[float] | None = None,
+        method: str | None = None,
+    ) -> sampling.HydrodynamicPaths:
+        """Paths of dξ = (−ε∇B + v e₁) ds + √(2ε) dW.
+
+        Parameters
+        ----------
+        n_paths : int
+            At least 2.
+        s_end : float
+        ds : float
+            Step of "heun"; must divide `s_end`.
+        seed : int or SeedSequence
+        initial : array_like or callable
+            A point (xi1, xi2), positions of shape (n_paths, 2), a callable
+            ``initial(rng, n_paths)`` that draws them, or a pair of a PlaneGrid and a
+            density on it: cells are drawn by their mass, places within evenly.
+        save_at : iterable of float, optional
+            Where to keep positions; by default at the end.
+        method : {"exact", "heun"}, optional
+            "exact" draws from the Gaussian transition law of a quadratic potential,
+            for which it is the default; "heun" is the stochastic Heun scheme, weakly
+            of order 2 for additive noise, for every other.
+
+        Raises
+        ------
+        ValueError
+            For arguments that do not fit.
+        NonFinitePathError
+            If a path runs away: ds is too long for a potential this steep.
+        """
+        return sampling.sample(
+            self.model,
+            n_paths,
+            s_end,
+            ds,
+            seed=seed,
+            initial=initial,
+            save_at=save_at,
+            method=method,
+        )
+
+    def reconstruct(self, P: Array, grid: PhaseSpaceGrid, *, order: int = 1) -> Array:
+        """p ≈ 𝒫/2π + ε p₁ on the phase-space grid; see `reconstruction.reconstruct`."""
+        model = self.model
+        return reconstruction.reconstruct(
+            P, grid, model.potential, model.noise, order=order
+        )
+
+    def initial_layer(self, p0: Array, grid: PhaseSpaceGrid) -> InitialLayer:
+        """What the slow equation does not see of a start p0; see `InitialLayer`."""
+        return InitialLayer(p0, grid, self.model.noise)

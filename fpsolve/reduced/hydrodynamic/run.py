@@ -1,0 +1,151 @@
+"""One run of the limit equation: from arguments to a solution."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fpsolve._checks import check_positive
+from fpsolve.errors import DomainTooSmallError
+from fpsolve.planes import PlaneGrid
+from fpsolve.progress import ProgressCallback, reporting
+from fpsolve.provenance import Stopwatch
+from fpsolve.reduced.evolution import Relaxation, relax, relax_extrapolated
+from fpsolve.reduced.hydrodynamic.scharfetter_gummel import gibbs_masses
+from fpsolve.reduced.hydrodynamic.solution import HydrodynamicSolution
+from fpsolve.schedule import make_schedule
+
+if TYPE_CHECKING:
+    from fpsolve.reduced.hydrodynamic.limit import HydrodynamicLimit
+
+__all__ = ["Arguments", "checked_start", "solve"]
+
+Array = NDArray[np.float64]
+
+_MOMENTS = ("xi1", "xi2", "xi1_xi1", "xi2_xi2", "xi1_xi2")
+
+
+@dataclass(frozen=True)
+class Arguments:
+    """What `HydrodynamicLimit.solve` was asked for."""
+
+    start: Array
+    s_span: tuple[float, float]
+    ds: float
+    method: str
+    save_at: Iterable[float] | None
+    extrapolate: bool
+    record_every: int
+    boundary_tolerance: float
+
+
+def checked_start(given: Any, plane: PlaneGrid) -> Array:
+    """The density at the start on the grid, finite and with mass."""
+    if callable(given):
+        density = plane.evaluate(given)
+        density = density / (density.sum() * plane.cell_area)
+    else:
+        density = plane.check(given, "P0")
+    if not np.isfinite(density).all():
+        raise ValueError("`P0` must be finite, got NaN or infinity.")
+    if not density.sum() > 0:
+        raise ValueError(f"`P0` must have positive mass, got {density.sum():g}.")
+    return density
+
+
+def solve(
+    limit: HydrodynamicLimit,
+    plane: PlaneGrid,
+    arguments: Arguments,
+    progress: bool | ProgressCallback,
+) -> HydrodynamicSolution:
+    """Relax the cell masses and read densities and series off them."""
+    check_positive("boundary_tolerance", arguments.boundary_tolerance)
+    schedule = make_schedule(
+        arguments.s_span, arguments.ds, arguments.save_at, arguments.record_every
+    )
+    masses = arguments.start.ravel() * plane.cell_area
+    phi = limit.effective_potential(*plane.mesh())
+    stationary = gibbs_masses(phi).ravel()
+    watch = Stopwatch()
+    errors = None
+    options: dict[str, Any] = {"method": arguments.method}
+    options["observables"] = observables(plane)
+    with reporting(progress) as options["report"]:
+        problem = limit.generator(plane), masses, stationary, schedule
+        if arguments.extrapolate:
+            relaxation, errors = relax_extrapolated(*problem, **options)
+        else:
+            relaxation = relax(*problem, **options)
+    solution = HydrodynamicSolution(
+        limit=limit,
+        grid=plane,
+        method=arguments.method,
+        ds=schedule.ds,
+        series=series_of(relaxation, plane),
+        saved_s=relaxation.saved_s,
+        densities=relaxation.saved.reshape(-1, *plane.shape) / plane.cell_area,
+        errors=None if errors is None else errors_of(errors),
+        provenance=watch.provenance(schedule.n_steps * (1 + 2 * (errors is not None))),
+    )
+    check_box(solution, arguments.boundary_tolerance)
+    return solution
+
+
+def observables(plane: PlaneGrid) -> dict[str, Array]:
+    """Functions of the cell whose averages make the series."""
+    xi1, xi2 = (x.ravel() for x in np.broadcast_arrays(*plane.mesh()))
+    ring = np.ones(plane.shape)
+    ring[1:-1, 1:-1] = 0.0
+    values = xi1, xi2, xi1**2, xi2**2, xi1 * xi2
+    return {**dict(zip(_MOMENTS, values, strict=True)), "ring": ring.ravel()}
+
+
+def series_of(relaxation: Relaxation, plane: PlaneGrid) -> dict[str, Array]:
+    """Series of the density from those of the cell masses."""
+    mass, mean = relaxation.mass, relaxation.averages
+    mean1, mean2 = mean["xi1"] / mass, mean["xi2"] / mass
+    return {
+        "s": relaxation.s,
+        "mass": mass,
+        "relative_entropy": relaxation.relative_entropy,
+        "entropy_dissipation": relaxation.entropy_dissipation,
+        "minimum": relaxation.minimum / plane.cell_area,
+        "boundary_mass": mean["ring"] / mass,
+        "mean_xi1": mean1,
+        "mean_xi2": mean2,
+        "variance_xi1": mean["xi1_xi1"] / mass - mean1**2,
+        "variance_xi2": mean["xi2_xi2"] / mass - mean2**2,
+        "covariance": mean["xi1_xi2"] / mass - mean1 * mean2,
+    }
+
+
+def errors_of(errors: Mapping[str, Array]) -> dict[str, Array]:
+    """Estimates under the names of the series; none for the second moments."""
+    names = {
+        "relative_entropy": "relative_entropy",
+        "entropy_dissipation": "entropy_dissipation",
+        "xi1": "mean_xi1",
+        "xi2": "mean_xi2",
+        "saved_l1": "density_l1",
+    }
+    return {name: errors[key] for key, name in names.items()}
+
+
+def check_box(solution: HydrodynamicSolution, tolerance: float) -> None:
+    """Raise if mass has reached the walls; the finished run goes with the error."""
+    share = solution.series["boundary_mass"]
+    bad = np.flatnonzero(~(share <= tolerance))
+    if bad.size:
+        error = DomainTooSmallError(
+            float(share[bad[0]]),
+            solution.grid.half_width,
+            float(solution.series["s"][bad[0]]),
+            tolerance,
+        )
+        error.solution = solution
+        raise error

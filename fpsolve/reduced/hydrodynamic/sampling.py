@@ -1,0 +1,214 @@
+"""Paths of dξ = (−ε∇B + v e₁) ds + √(2ε) dW, the process of the limit equation."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fpsolve._checks import check_integer, check_positive
+from fpsolve.errors import NonFinitePathError
+from fpsolve.models import LayDownModel
+from fpsolve.planes import PlaneGrid
+from fpsolve.potentials import QuadraticPotential
+from fpsolve.reduced.hydrodynamic.ornstein_uhlenbeck import OrnsteinUhlenbeckLimit
+from fpsolve.schedule import Schedule, make_schedule
+
+__all__ = ["METHODS", "HydrodynamicPaths", "sample"]
+
+Array = NDArray[np.float64]
+
+METHODS = ("exact", "heun")
+
+
+@dataclass(frozen=True, eq=False)
+class HydrodynamicPaths:
+    """Positions ξ of independent paths of the limit process.
+
+    Attributes
+    ----------
+    s : ndarray, shape (n_saved,)
+    xi : ndarray, shape (n_saved, n_paths, 2)
+    method : {"exact", "heun"}
+    ds : float
+        Step; for "exact" the longest distance between two saved points.
+    """
+
+    s: Array
+    xi: Array
+    method: str
+    ds: float
+
+    @property
+    def n_paths(self) -> int:
+        """Number of paths."""
+        return int(self.xi.shape[1])
+
+    def mean(self) -> tuple[Array, Array]:
+        """Estimates of E ξ and their standard errors, each (n_saved, 2)."""
+        spread = self.xi.std(axis=1, ddof=1)
+        return self.xi.mean(axis=1), spread / math.sqrt(self.n_paths)
+
+    def covariance(self) -> tuple[Array, Array]:
+        """Estimates of the covariance and their standard errors, (n_saved, 2, 2)."""
+        away = self.xi - self.xi.mean(axis=1, keepdims=True)
+        products = away[..., :, None] * away[..., None, :]
+        scale = self.n_paths / (self.n_paths - 1)
+        error = products.std(axis=1, ddof=1) / math.sqrt(self.n_paths)
+        return scale * products.mean(axis=1), error
+
+
+def sample(
+    model: LayDownModel,
+    n_paths: int,
+    s_end: float,
+    ds: float | None,
+    *,
+    seed: int | np.random.SeedSequence,
+    initial: Any,
+    save_at: Iterable[float] | None = None,
+    method: str | None = None,
+) -> HydrodynamicPaths:
+    """See `HydrodynamicLimit.sample`."""
+    n_paths = check_integer("n_paths", n_paths, at_least=2)
+    method = checked_method(model, method)
+    rng = np.random.default_rng(seed)
+    xi = starts(initial, n_paths, rng)
+    if method == "exact":
+        stops = checked_stops(s_end, save_at)
+        return _exact(model, xi, stops, rng)
+    if ds is None:
+        raise ValueError(
+            "`ds` must be given for the method 'heun', got None; its bias is of order "
+            "ds², compare two steps."
+        )
+    return _heun(model, xi, make_schedule((0.0, s_end), ds, save_at), rng)
+
+
+def checked_method(model: LayDownModel, method: str | None) -> str:
+    """The method, or the best one for the potential."""
+    quadratic = isinstance(model.potential, QuadraticPotential)
+    if method is None:
+        return "exact" if quadratic else "heun"
+    if method not in METHODS:
+        known = ", ".join(repr(name) for name in METHODS)
+        raise ValueError(f"`method` must be one of {known}, got {method!r}.")
+    if method == "exact" and not quadratic:
+        raise ValueError(
+            "`method` must be 'heun' for a potential that is not quadratic, got "
+            f"'exact' with {model.potential!r}."
+        )
+    return method
+
+
+def starts(initial: Any, n_paths: int, rng: np.random.Generator) -> Array:
+    """Positions at s = 0, shape (n_paths, 2)."""
+    if isinstance(initial, tuple) and isinstance(initial[0], PlaneGrid):
+        grid, density = initial
+        return drawn(grid, density, n_paths, rng)
+    given = initial(rng, n_paths) if callable(initial) else initial
+    xi = np.asarray(given, dtype=np.float64)
+    if xi.shape not in ((2,), (n_paths, 2)):
+        raise ValueError(
+            f"`initial` must be a point (xi1, xi2) or have the shape ({n_paths}, 2), "
+            f"got {xi.shape}."
+        )
+    if not np.isfinite(xi).all():
+        raise ValueError("`initial` must be finite, got NaN or infinity.")
+    return np.array(np.broadcast_to(xi, (n_paths, 2)))
+
+
+def drawn(
+    grid: PlaneGrid, density: Any, n_paths: int, rng: np.random.Generator
+) -> Array:
+    """Positions with a density that is constant on each cell."""
+    mass = grid.check(density, "initial").ravel()
+    if not (mass.min() >= 0 and 0 < mass.sum() < math.inf):
+        raise ValueError(
+            "`initial` must be a non-negative, finite density with mass, got a minimum "
+            f"of {mass.min():g} and a sum of {mass.sum():g}."
+        )
+    cells = np.unravel_index(
+        rng.choice(mass.size, n_paths, p=mass / mass.sum()), grid.shape
+    )
+    centres = np.stack([grid.xi1[cells[0]], grid.xi2[cells[1]]], axis=1)
+    return np.asarray(centres + (rng.random((n_paths, 2)) - 0.5) * grid.spacing)
+
+
+def checked_stops(s_end: float, save_at: Iterable[float] | None) -> Array:
+    """Where paths are kept, ascending."""
+    end = check_positive("s_end", s_end)
+    asked = (end,) if save_at is None else save_at
+    stops = np.array(sorted({float(s) for s in asked}))
+    if not (stops.size and stops[0] >= 0 and stops[-1] <= end):
+        raise ValueError(
+            f"`save_at` must hold numbers in [0, {end:g}], got {stops.tolist()}."
+        )
+    return stops
+
+
+def _exact(
+    model: LayDownModel, xi: Array, stops: Array, rng: np.random.Generator
+) -> HydrodynamicPaths:
+    """From one saved point to the next by the Gaussian transition law."""
+    process = OrnsteinUhlenbeckLimit(model)
+    gaps = np.diff(stops, prepend=0.0)
+    saved = np.empty((len(stops), *xi.shape))
+    for i, gap in enumerate(gaps):
+        xi = process.transition(xi, gap, rng) if gap else xi
+        saved[i] = xi
+    return HydrodynamicPaths(stops, saved, "exact", float(gaps.max()))
+
+
+def _heun(
+    model: LayDownModel, xi: Array, schedule: Schedule, rng: np.random.Generator
+) -> HydrodynamicPaths:
+    """ξ* = ξ + a(ξ) ds + b ΔW, ξ ← ξ + ½(a(ξ) + a(ξ*)) ds + b ΔW.
+
+    Weakly of order 2, because the noise is additive.
+    """
+    amplitude = math.sqrt(2.0 * schedule.ds) / model.noise
+    drift = _Drift(model)
+    saved = [xi] if 0 in schedule.saves else []
+    saves = set(schedule.saves)
+    for step in range(1, schedule.n_steps + 1):
+        kick = amplitude * rng.standard_normal(xi.shape)
+        # Where a path runs away the potential overflows; the step is then refused.
+        with np.errstate(all="ignore"):
+            slope = drift(xi)
+            ahead = drift(xi + schedule.ds * slope + kick)
+            moved = xi + 0.5 * schedule.ds * (slope + ahead) + kick
+        check_paths(model, xi, moved, schedule.s(step - 1))
+        xi = moved
+        if step in saves:
+            saved.append(xi)
+    s = np.array([schedule.s(step) for step in schedule.saves])
+    return HydrodynamicPaths(s, np.array(saved), "heun", schedule.ds)
+
+
+class _Drift:
+    """a(ξ) = −ε∇B(ξ) + v e₁."""
+
+    def __init__(self, model: LayDownModel) -> None:
+        self.gradient = model.potential.gradient
+        self.epsilon = 1.0 / model.noise**2
+        self.belt = np.array([model.belt_speed, 0.0])
+
+    def __call__(self, xi: Array) -> Array:
+        slopes = np.stack(self.gradient(xi[:, 0], xi[:, 1]), axis=1)
+        return np.asarray(self.belt - self.epsilon * slopes)
+
+
+def check_paths(model: LayDownModel, before: Array, after: Array, s: float) -> None:
+    """Raise NonFinitePathError if a step led to infinity."""
+    if math.isfinite(float(np.abs(after).max())):
+        return
+    path = int(np.flatnonzero(~np.isfinite(after).all(axis=1))[0])
+    xi1, xi2 = map(float, before[path])
+    with np.errstate(all="ignore"):
+        slope1, slope2 = map(float, model.potential.gradient(xi1, xi2))
+    raise NonFinitePathError(path, s, (xi1, xi2), (slope1, slope2))

@@ -1,0 +1,133 @@
+"""What the limit equation gives: densities 𝒫(ξ, s) with their series."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fpsolve.decay import DecayRate, fit_decay
+from fpsolve.planes import PlaneGrid
+
+if TYPE_CHECKING:
+    import xarray
+
+    from fpsolve.reduced.hydrodynamic.limit import HydrodynamicLimit
+
+__all__ = ["HydrodynamicSolution", "HydrodynamicSteadyState"]
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class HydrodynamicSteadyState:
+    """𝒫_S = c exp(−B + v ξ1/ε) on a grid, and how well it is stationary there.
+
+    Attributes
+    ----------
+    density : ndarray, shape (n1, n2)
+        exp(−Φ) at the cell centres, normalised on the grid: the exact stationary
+        density of the discrete equation.
+    residual : float
+        Σ |Q m|, m the cell masses: the rate per unit of s at which the discrete
+        equation still changes it, in L¹; rounding only.
+    boundary_mass : float
+        Share of mass in the outermost cells.
+    grid : PlaneGrid
+    """
+
+    density: Array
+    residual: float
+    boundary_mass: float
+    grid: PlaneGrid
+
+
+@dataclass(frozen=True, eq=False)
+class HydrodynamicSolution:
+    """The densities 𝒫(ξ, s) that were saved, and series over every recorded step.
+
+    Every series is an attribute: `solution.s`, `mass`, `relative_entropy` (to the
+    discrete 𝒫_S), `entropy_dissipation`, `minimum`, `boundary_mass`, `mean_xi1`,
+    `mean_xi2`, `variance_xi1`, `variance_xi2`, `covariance`; all of shape
+    (n_recorded,) and dimensionless.
+
+    Attributes
+    ----------
+    limit : HydrodynamicLimit
+    grid : PlaneGrid
+    method : str
+    ds : float
+        Step; with extrapolation the longer of the two.
+    series : dict of ndarray
+    saved_s : ndarray, shape (n_saved,)
+    densities : ndarray, shape (n_saved, n1, n2)
+    errors : dict of ndarray, or None
+        Richardson estimates in ds: "density_l1" (n_saved,) and one array for each
+        series that depends on ds. The error of the grid comes in addition.
+    provenance : dict
+        Versions, date, times, number of steps.
+    """
+
+    limit: HydrodynamicLimit
+    grid: PlaneGrid
+    method: str
+    ds: float
+    series: Mapping[str, Array]
+    saved_s: Array
+    densities: Array
+    errors: Mapping[str, Array] | None = None
+    provenance: dict[str, Any] = field(default_factory=dict)
+
+    def __getattr__(self, name: str) -> Array:
+        # Only called for names that are not fields; guards against half-built
+        # objects, as pickle and copy make them.
+        series: Mapping[str, Array] = self.__dict__.get("series", {})
+        if name in series:
+            found: Array = series[name]
+            return found
+        raise AttributeError(
+            f"HydrodynamicSolution has no attribute {name!r}; its series are "
+            f"{', '.join(series)}."
+        )
+
+    def __dir__(self) -> list[str]:
+        return [*super().__dir__(), *self.series]
+
+    def __repr__(self) -> str:
+        return (
+            f"HydrodynamicSolution(to s = {self.series['s'][-1]:g}, {self.method}, "
+            f"ds = {self.ds:g}, grid {self.grid.shape}, {len(self.saved_s)} saved "
+            "densities)"
+        )
+
+    def density(self, s: float) -> Array:
+        """Saved density 𝒫 at s; shape (n1, n2).
+
+        Raises
+        ------
+        ValueError
+            If no density was saved at s.
+        """
+        if self.saved_s.size:
+            nearest = int(np.argmin(np.abs(self.saved_s - s)))
+            if abs(self.saved_s[nearest] - s) <= 1e-9 * max(1.0, abs(s)):
+                found: Array = self.densities[nearest]
+                return found
+        known = ", ".join(f"{value:g}" for value in self.saved_s) or "none"
+        raise ValueError(
+            f"`s` must be one of the saved values {known}, got {s:g}; "
+            "add it to `save_at` of the run."
+        )
+
+    def entropy_rate(self, window: tuple[float, float] | None = None) -> DecayRate:
+        """Rate λ of H ~ e^{−λs}, fitted on a window of s; tends to twice the gap."""
+        return fit_decay(self.series["s"], self.series["relative_entropy"], window)
+
+    def to_xarray(self) -> xarray.Dataset:
+        """Labelled Dataset: densities (s, xi1, xi2), series over the steps."""
+        from fpsolve.io.hydrodynamic import to_xarray
+
+        return to_xarray(self)

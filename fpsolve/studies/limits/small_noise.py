@@ -1,0 +1,172 @@
+"""The small-noise limit: law of G under the full equation and under (16)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fpsolve._checks import check_finite, check_integer, check_positive
+from fpsolve.errors import RunInterrupted
+from fpsolve.paths import GaussianLaw
+from fpsolve.potentials import Potential
+from fpsolve.reduced.energy import EnergyProcess
+from fpsolve.studies.limits.small_noise_case import small_noise_case
+from fpsolve.studies.limits.small_noise_dataset import small_noise_dataset
+from fpsolve.studies.rates.sweep import SweepProgress, sweep
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["small_noise_limit"]
+
+Array = NDArray[np.float64]
+
+# Width of the ξ cells over the radius of the circle at A = 0.2, step, and paths.
+_SPACING, _DS, _N_PATHS = 0.12, 0.125, 1_000_000
+_QUICK_SPACING, _QUICK_DS, _QUICK_N_PATHS = 0.16, 0.25, 100_000
+# Errors of a cell accumulate over a length of order A⁻² and fall with its eighth
+# power.
+_REFERENCE_NOISE, _POWER = 0.2, 0.25
+
+
+def small_noise_limit(
+    potential: Potential,
+    noises: Iterable[float],
+    *,
+    slow_length: float = 1.0,
+    belt_speed_scales: Iterable[float] = (0.0, 0.3),
+    p0: GaussianLaw | None = None,
+    quick: bool = False,
+    ds: float | None = None,
+    n_paths: int | None = None,
+    seed: int = 1,
+    client: Any = None,
+    workers: int | None = 0,
+    directory: str | Path | None = None,
+    progress: bool | SweepProgress = False,
+) -> xr.Dataset:
+    """Distance between the law of G at A² s = const. and that of the averaged (16).
+
+    For every noise and every v = w A²: the full equation by `drift_kick`, extrapolated
+    in the step and on two grids; paths, with their standard errors; the averaged
+    equation by finite volumes, begun with the law of G of the same start. Laws are
+    compared through twelve B-splines (`SmoothedLaw`).
+
+    The distance falls like ε = A²: the first correction to a function of G is the
+    solution of the cell problem on the orbit, which the start sees at first order. It
+    is odd under β → π - β, so a start that is symmetric under it has none. Fast
+    modes, which die over lengths of order A^{-4/3}, are still there when A is 0.4.
+
+    Parameters
+    ----------
+    potential : Potential
+        Isotropic, with a single well.
+    noises : iterable of float
+        Noise amplitudes A, positive.
+    slow_length : float
+        A² s, at which the laws are compared.
+    belt_speed_scales : iterable of float
+        w = v/A². The limit does not depend on it.
+    p0 : GaussianLaw, optional
+        Start; by default one beside the circle, heading outwards at π/4.
+    quick : bool
+        Coarser cells, fewer paths.
+    ds : float, optional
+        Longer step of the extrapolated runs; by default 1/8, quick 1/4.
+    n_paths : int, optional
+        Paths for every case; 0 for none. By default a million, quick 100 000.
+    seed : int
+    client, workers, directory, progress
+        See `fpsolve.studies.sweep`; by default in this process.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over `belt_speed_scale`, `noise` and `function`. `distance` and its
+        `observed_order` in ε, `distance_error` (of the cells), `mean` and `exact_mean`
+        of G, `paths_distance` beside what chance makes of it, `paths_z` (largest
+        deviation of paths from the solver in standard errors).
+
+    Raises
+    ------
+    ValueError, TypeError
+        If the potential has no energy process, or an option does not fit.
+    RunInterrupted
+        After Ctrl-C; `solution` is the Dataset of what was finished.
+
+    References
+    ----------
+    [KMW09]_, section 3.1.2, equations (13) to (16).
+    """
+    amplitudes = _checked_noises(potential, noises)
+    scales = np.array([check_finite("belt_speed_scales", w) for w in belt_speed_scales])
+    law = _default_start(potential) if p0 is None else _checked_start(p0)
+    options = {
+        "law": law,
+        "slow_length": check_positive("slow_length", slow_length),
+        "ds": _checked_step(ds, quick),
+        "n_paths": _checked_paths(n_paths, quick),
+        "seed": check_integer("seed", seed, at_least=0),
+    }
+    cases = [
+        {
+            "potential": potential, "noise": float(noise), "belt_speed_scale": float(w),
+            "spacing": _spacing(float(noise), quick), **options,
+        }
+        for w in scales
+        for noise in amplitudes
+    ]  # fmt: skip
+    shape = scales, amplitudes
+    try:
+        found = sweep(
+            small_noise_case, cases, client=client, workers=workers,
+            directory=directory, progress=progress,
+        )  # fmt: skip
+    except RunInterrupted as interrupt:
+        partial = small_noise_dataset(potential, *shape, interrupt.solution, options)
+        raise RunInterrupted(partial) from None
+    return small_noise_dataset(potential, *shape, found, options)
+
+
+def _checked_noises(potential: Potential, noises: Iterable[float]) -> Array:
+    """The noises, descending: the limit is at the end."""
+    EnergyProcess(potential, 1.0)
+    listed = [check_positive("noises", noise) for noise in noises]
+    if not listed:
+        raise ValueError("`noises` must hold at least one noise, got none.")
+    return np.unique(listed)[::-1]
+
+
+def _checked_start(p0: Any) -> GaussianLaw:
+    if not isinstance(p0, GaussianLaw):
+        raise TypeError(
+            f"`p0` must be a GaussianLaw, got {p0!r}; its law of G is computed along "
+            "the orbits."
+        )
+    return p0
+
+
+def _checked_step(ds: float | None, quick: bool) -> float:
+    if ds is None:
+        return _QUICK_DS if quick else _DS
+    return check_positive("ds", ds)
+
+
+def _checked_paths(n_paths: int | None, quick: bool) -> int:
+    if n_paths is None:
+        return _QUICK_N_PATHS if quick else _N_PATHS
+    return check_integer("n_paths", n_paths, at_least=0)
+
+
+def _default_start(potential: Potential) -> GaussianLaw:
+    radius = EnergyProcess(potential, 1.0).radius
+    return GaussianLaw((radius, 0.0), 0.3 * radius**2, np.pi / 4, 2.0)
+
+
+def _spacing(noise: float, quick: bool) -> float:
+    finer: float = min(1.0, noise / _REFERENCE_NOISE) ** _POWER
+    return (_QUICK_SPACING if quick else _SPACING) * finer
