@@ -14,20 +14,25 @@ from __future__ import annotations
 
 import argparse
 import math
+import os
 from typing import Any
 
-import numba
-import numpy as np
-from reporting import RESULTS, Report
+# Small matrices and small grids: waiting for a second thread costs more than it does.
+# To be set before BLAS and numba are loaded, here and in the processes of the sweep.
+for variable in ("OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS"):
+    os.environ.setdefault(variable, "1")
 
-import fpsolve as fp
-from fpsolve.paths import GaussianLaw
-from fpsolve.plotting import plot_large_noise
-from fpsolve.studies.limits.distances import distances
-from fpsolve.studies.limits.gap_expansion import next_gap_term
-from fpsolve.studies.limits.large_noise import LARGE_NOISE_START
-from fpsolve.studies.limits.plane_limit import stationary_limit, transient_limit
-from fpsolve.studies.rates.poincare import poincare_constant
+import numpy as np  # noqa: E402
+from reporting import RESULTS, Report  # noqa: E402
+
+import fpsolve as fp  # noqa: E402
+from fpsolve.paths import GaussianLaw  # noqa: E402
+from fpsolve.plotting import plot_large_noise  # noqa: E402
+from fpsolve.studies.limits.distances import distances  # noqa: E402
+from fpsolve.studies.limits.gap_expansion import next_gap_term  # noqa: E402
+from fpsolve.studies.limits.large_noise import LARGE_NOISE_START  # noqa: E402
+from fpsolve.studies.limits.plane_limit import stationary_limit, transient_limit  # noqa: E402
+from fpsolve.studies.rates.poincare import poincare_constant  # noqa: E402
 
 HALVINGS = 2.0 ** np.array([1.0, 1.5, 2.0, 2.5])  # ε = 1/4 … 1/32
 SLOW_LENGTH, PULL = 1.25, 0.5
@@ -190,8 +195,6 @@ def main() -> None:
     arguments = parser.parse_args()
     quick = arguments.quick
     report = Report("large_noise_limit", quick)
-    # What runs in this process is small: a second thread costs more than it does.
-    numba.set_num_threads(1)
     options = {
         "slow_length": SLOW_LENGTH, "belt_speed_scale": PULL, "quick": quick,
         "workers": arguments.workers,

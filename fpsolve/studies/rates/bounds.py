@@ -12,6 +12,7 @@ from scipy.optimize import brentq, minimize
 
 from fpsolve._checks import check_positive
 from fpsolve.potentials import LinearPotential, Potential, QuadraticPotential
+from fpsolve.studies.limits.gap_expansion import next_gap_term
 from fpsolve.studies.rates.poincare import poincare_constant, require_confining
 
 __all__ = [
@@ -150,18 +151,14 @@ def small_noise_asymptote(potential: Potential, noise: ArrayLike) -> Array:
 def large_noise_asymptote(potential: Potential, noise: ArrayLike) -> Array:
     """Λ/A² (1 + c/A⁴), the rate of the hydrodynamic limit with its first correction.
 
-    Λ is the Poincaré constant of e^{−B}. c = 3/(2σ²) for isotropic quadratic B, and
-    −K²/48 for B = K|ξ|: the latter is not derived but read off the spectrum, to five
-    digits (validation/rate_asymptotes.py). For other potentials c is left out. NaN
-    where the correction exceeds a half: there it means nothing.
+    Λ is the Poincaré constant of e^{−B}, and c that of `next_gap_term`: known for
+    quadratic and linear B, 3/(2σ²) and −K²/48 among them. For other potentials c is
+    left out. NaN where the correction exceeds a half: there it means nothing.
     """
     noise = np.asarray(noise, dtype=np.float64)
     poincare = poincare_constant(potential)
-    correction = 0.0
-    if isinstance(potential, QuadraticPotential) and potential.isotropic:
-        correction = 1.5 * poincare
-    elif isinstance(potential, LinearPotential):
-        correction = -(potential.slope**2) / 48
+    term = next_gap_term(potential)
+    correction = term if math.isfinite(term) else 0.0
     share = correction / noise**4
     rate = poincare / noise**2 * (1 + share)
     return np.asarray(np.where(np.abs(share) <= 0.5, rate, np.nan))
