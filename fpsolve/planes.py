@@ -56,7 +56,18 @@ class PlaneGrid:
 
     @classmethod
     def of(cls, grid: PhaseSpaceGrid) -> PlaneGrid:
-        """The plane of a phase-space grid: the same cells in ξ, without the angle."""
+        """The plane of a phase-space grid: the same cells in ξ, without the angle.
+
+        Raises
+        ------
+        TypeError
+            If `grid` is something else.
+        """
+        if not isinstance(grid, PhaseSpaceGrid):
+            raise TypeError(
+                f"`grid` must be a PhaseSpaceGrid, got {grid!r}; the angle needs "
+                "cells too."
+            )
         return cls(grid.half_width, grid.shape[:2])
 
     @property

@@ -125,3 +125,6 @@ def test_what_cannot_be_reconstructed_is_refused():
         limit.reconstruct(np.ones(PLANE.shape), GRID, order=2)
     with pytest.raises(GridMismatchError, match=r"`P` must have the shape \(48, 40\)"):
         limit.reconstruct(np.ones((40, 48)), GRID)
+    for fill in (limit.reconstruct, limit.initial_layer):
+        with pytest.raises(TypeError, match="`grid` must be a PhaseSpaceGrid"):
+            fill(np.ones(PLANE.shape), PLANE)

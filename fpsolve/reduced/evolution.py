@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from fpsolve.errors import RunInterrupted
 from fpsolve.progress import ProgressCallback
 from fpsolve.reduced.entropy import Exchange, relative_entropy_of
 from fpsolve.reduced.stepping import METHODS, Method
@@ -83,6 +84,8 @@ def relax(
     ------
     ValueError
         If the arguments do not fit each other.
+    RunInterrupted
+        After Ctrl-C; `solution` is the Relaxation of what was recorded.
     """
     check_arguments(generator, start, equilibrium, method)
     step: Method = METHODS[method](generator, schedule.ds)
@@ -90,15 +93,18 @@ def relax(
     mass = np.array(start, dtype=np.float64)
     total = float(mass.sum())
     record(0, mass)
-    for first, last in schedule.legs():
-        for _ in range(first, last):
-            mass = step(mass)
-            # Rounding alone changes the sum, by about 1e-16 ds ‖Q‖ a step and always
-            # the same way; over a thousand steps that would show.
-            mass *= total / mass.sum()
-        record(last, mass)
-        if report is not None:
-            report(last, schedule.n_steps, schedule.s(last))
+    try:
+        for first, last in schedule.legs():
+            for _ in range(first, last):
+                mass = step(mass)
+                # Rounding alone changes the sum, by about 1e-16 ds ‖Q‖ a step and
+                # always the same way; over a thousand steps that would show.
+                mass *= total / mass.sum()
+            record(last, mass)
+            if report is not None:
+                report(last, schedule.n_steps, schedule.s(last))
+    except KeyboardInterrupt:
+        raise RunInterrupted(record.relaxation()) from None
     return record.relaxation()
 
 
@@ -132,7 +138,8 @@ class Record:
 
     def relaxation(self) -> Relaxation:
         """What was written down."""
-        saved_s = np.array([self.schedule.s(step) for step in self.schedule.saves])
+        reached = self.schedule.saves[: len(self.saved)]
+        saved_s = np.array([self.schedule.s(step) for step in reached])
         saved = np.array(self.saved).reshape(len(saved_s), len(self.equilibrium))
         averages = {name: np.array(row) for name, row in self.averages.items()}
         series = zip(*self.rows, strict=True)
@@ -154,7 +161,8 @@ def relax_extrapolated(
 ) -> tuple[Relaxation, dict[str, Array]]:
     """Two runs of `relax`, with ds and ds/2, combined; see `extrapolated_relaxation`.
 
-    Parameters as for `relax`. The result has the stops of the run with ds.
+    Parameters as for `relax`. The result has the stops of the run with ds. Ctrl-C in
+    the second run leaves the first one, finished and not extrapolated.
     """
 
     def run(stops: Schedule, n_before: int) -> Relaxation:
@@ -168,7 +176,11 @@ def relax_extrapolated(
             report=_shifted(report, n_before, 3 * schedule.n_steps),
         )
 
-    coarse, fine = run(schedule, 0), run(schedule.refined(), schedule.n_steps)
+    coarse = run(schedule, 0)
+    try:
+        fine = run(schedule.refined(), schedule.n_steps)
+    except RunInterrupted:
+        raise RunInterrupted(coarse) from None
     return extrapolated_relaxation(coarse, fine, METHODS[method].order)
 
 

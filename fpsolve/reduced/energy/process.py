@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from fpsolve.errors import RunInterrupted
 from fpsolve.progress import ProgressCallback, reporting
 from fpsolve.reduced.energy.coefficients import Coefficients
 from fpsolve.reduced.energy.grid import EnergyGrid
@@ -15,7 +16,7 @@ from fpsolve.reduced.energy.sampling import EnergyPaths, sample_energies
 from fpsolve.reduced.energy.solution import EnergySolution
 from fpsolve.reduced.energy.spectrum import EnergySpectrum, energy_spectrum
 from fpsolve.reduced.energy.start import starting_masses
-from fpsolve.reduced.evolution import relax, relax_extrapolated
+from fpsolve.reduced.evolution import Relaxation, relax, relax_extrapolated
 from fpsolve.schedule import make_schedule
 
 __all__ = ["EnergyProcess"]
@@ -148,24 +149,32 @@ class EnergyProcess(Coefficients):
             If the arguments do not fit.
         TypeError
             If `grid` is not an EnergyGrid.
+        RunInterrupted
+            After Ctrl-C; `solution` is what was recorded, or the finished run at ds.
         """
         self._check_grid(grid)
         schedule = make_schedule(s_span, ds, save_at, record_every)
         masses = starting_masses(start, grid)
         generator = grid.generator(self.noise)
         arguments = (generator, masses, grid.equilibrium, schedule)
-        errors = None
+
+        def solution(
+            found: Relaxation, errors: Mapping[str, Array] | None
+        ) -> EnergySolution:
+            series = {name: getattr(found, name) for name in _SERIES}
+            law = found.saved_s, found.saved
+            return EnergySolution(self, grid, method, schedule.ds, series, errors, *law)
+
         with reporting(progress) as report:
-            if extrapolate:
-                found, errors = relax_extrapolated(
-                    *arguments, method=method, report=report
+            try:
+                if not extrapolate:
+                    found = relax(*arguments, method=method, report=report)
+                    return solution(found, None)
+                return solution(
+                    *relax_extrapolated(*arguments, method=method, report=report)
                 )
-            else:
-                found = relax(*arguments, method=method, report=report)
-        series = {name: getattr(found, name) for name in _SERIES}
-        return EnergySolution(
-            self, grid, method, schedule.ds, series, errors, found.saved_s, found.saved
-        )
+            except RunInterrupted as interrupt:
+                raise RunInterrupted(solution(interrupt.solution, None)) from None
 
     def sample(
         self,

@@ -54,9 +54,9 @@ class InitialLayer:
     """
 
     def __init__(self, p0: Array, grid: PhaseSpaceGrid, noise: float) -> None:
+        self.plane = PlaneGrid.of(grid)
         self.p0, self.grid = grid.check(p0, "p0"), grid
         self.noise = check_positive("noise", noise)
-        self.plane = PlaneGrid.of(grid)
         self.density_at_start = self.p0.sum(axis=2) * grid.spacing[2]
         self.displaced = 2.0 / self.noise**2 * self._divergence()
 

@@ -172,6 +172,8 @@ class HydrodynamicLimit:
             For arguments that do not fit.
         DomainTooSmallError
             If mass reaches the boundary of the box; it carries the `solution`.
+        RunInterrupted
+            After Ctrl-C; `solution` is what was recorded, or the finished run at ds.
         """
         plane = plane_of(grid)
         arguments = run.Arguments(

@@ -10,14 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fpsolve._checks import check_positive
-from fpsolve.errors import DomainTooSmallError
+from fpsolve.errors import DomainTooSmallError, RunInterrupted
 from fpsolve.planes import PlaneGrid
 from fpsolve.progress import ProgressCallback, reporting
 from fpsolve.provenance import Stopwatch
 from fpsolve.reduced.evolution import Relaxation, relax, relax_extrapolated
 from fpsolve.reduced.hydrodynamic.scharfetter_gummel import gibbs_masses
 from fpsolve.reduced.hydrodynamic.solution import HydrodynamicSolution
-from fpsolve.schedule import make_schedule
+from fpsolve.schedule import Schedule, make_schedule
 
 if TYPE_CHECKING:
     from fpsolve.reduced.hydrodynamic.limit import HydrodynamicLimit
@@ -72,28 +72,44 @@ def solve(
     phi = limit.effective_potential(*plane.mesh())
     stationary = gibbs_masses(phi).ravel()
     watch = Stopwatch()
-    errors = None
     options: dict[str, Any] = {"method": arguments.method}
     options["observables"] = observables(plane)
+
+    def solution(
+        relaxation: Relaxation, errors: Mapping[str, Array] | None
+    ) -> HydrodynamicSolution:
+        n_steps = schedule.n_steps * (1 + 2 * (errors is not None))
+        return HydrodynamicSolution(
+            limit=limit,
+            grid=plane,
+            method=arguments.method,
+            ds=schedule.ds,
+            series=series_of(relaxation, plane),
+            saved_s=relaxation.saved_s,
+            densities=relaxation.saved.reshape(-1, *plane.shape) / plane.cell_area,
+            errors=None if errors is None else errors_of(errors),
+            provenance=watch.provenance(n_steps),
+        )
+
     with reporting(progress) as options["report"]:
         problem = limit.generator(plane), masses, stationary, schedule
-        if arguments.extrapolate:
-            relaxation, errors = relax_extrapolated(*problem, **options)
-        else:
-            relaxation = relax(*problem, **options)
-    solution = HydrodynamicSolution(
-        limit=limit,
-        grid=plane,
-        method=arguments.method,
-        ds=schedule.ds,
-        series=series_of(relaxation, plane),
-        saved_s=relaxation.saved_s,
-        densities=relaxation.saved.reshape(-1, *plane.shape) / plane.cell_area,
-        errors=None if errors is None else errors_of(errors),
-        provenance=watch.provenance(schedule.n_steps * (1 + 2 * (errors is not None))),
-    )
-    check_box(solution, arguments.boundary_tolerance)
-    return solution
+        try:
+            found = solution(*relaxed(problem, options, arguments.extrapolate))
+        except RunInterrupted as interrupt:
+            raise RunInterrupted(solution(interrupt.solution, None)) from None
+    check_box(found, arguments.boundary_tolerance)
+    return found
+
+
+def relaxed(
+    problem: tuple[Any, Array, Array, Schedule],
+    options: dict[str, Any],
+    extrapolate: bool,
+) -> tuple[Relaxation, Mapping[str, Array] | None]:
+    """The relaxation, with errors if it is extrapolated."""
+    if extrapolate:
+        return relax_extrapolated(*problem, **options)
+    return relax(*problem, **options), None
 
 
 def observables(plane: PlaneGrid) -> dict[str, Array]:
