@@ -18,6 +18,7 @@ SCRIPTS = (
     "decay_rate_is_the_gap.py",
     "rate_asymptotes.py",
     "large_noise_limit.py",
+    "small_noise_limit.py",
     "performance/run.py",
     "performance/paths.py",
     "performance/reduced.py",
