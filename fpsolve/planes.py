@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
-from fpsolve._checks import check_integer, construct
-from fpsolve.errors import GridMismatchError
-from fpsolve.grids import PhaseSpaceGrid, _centres, _checked_half_width
+from fpsolve._checks import check_integer
+from fpsolve.cells import CellGrid, checked_half_width
+from fpsolve.grids import PhaseSpaceGrid
 
 __all__ = ["PlaneGrid", "plane_of"]
 
@@ -23,7 +20,7 @@ _FEWEST_CELLS = 2
 
 
 @dataclass(frozen=True)
-class PlaneGrid:
+class PlaneGrid(CellGrid):
     """Cell centres ξ1_i = -L1 + (i + 1/2) d1 and ξ2_j = -L2 + (j + 1/2) d2.
 
     The box [-L1, L1] x [-L2, L2] is closed: nothing flows through its walls, unlike
@@ -51,7 +48,7 @@ class PlaneGrid:
     shape: tuple[int, int]
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "half_width", _checked_half_width(self.half_width))
+        object.__setattr__(self, "half_width", checked_half_width(self.half_width))
         object.__setattr__(self, "shape", _checked_plane_shape(self.shape))
 
     @classmethod
@@ -71,97 +68,18 @@ class PlaneGrid:
         return cls(grid.half_width, grid.shape[:2])
 
     @property
-    def half_widths(self) -> tuple[float, float]:
-        """Half widths (L1, L2)."""
-        if isinstance(self.half_width, tuple):
-            return self.half_width
-        return self.half_width, self.half_width
-
-    @property
     def spacing(self) -> tuple[float, float]:
         """Cell widths (d1, d2)."""
         (width1, width2), (n_xi1, n_xi2) = self.half_widths, self.shape
         return 2 * width1 / n_xi1, 2 * width2 / n_xi2
 
-    @property
-    def n_cells(self) -> int:
-        """Number of cells."""
-        return math.prod(self.shape)
-
-    @property
-    def cell_area(self) -> float:
-        """Area d1 d2 of a cell."""
-        return math.prod(self.spacing)
-
-    @property
-    def nbytes(self) -> int:
-        """Memory of one density in bytes."""
-        return self.n_cells * np.dtype(np.float64).itemsize
-
-    @cached_property
-    def xi1(self) -> NDArray[np.float64]:
-        """Cell centres ξ1_i, shape (n_xi1,), read-only."""
-        return _centres(-self.half_widths[0], self.spacing[0], self.shape[0])
-
-    @cached_property
-    def xi2(self) -> NDArray[np.float64]:
-        """Cell centres ξ2_j, shape (n_xi2,), read-only."""
-        return _centres(-self.half_widths[1], self.spacing[1], self.shape[1])
-
     def mesh(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Cell centres (ξ1, ξ2), shapes (n1, 1) and (1, n2); they broadcast."""
         return self.xi1[:, None], self.xi2[None, :]
 
-    def check(self, density: ArrayLike, name: str = "density") -> NDArray[np.float64]:
-        """Return `density` as a C-contiguous float64 array of the shape of the grid.
-
-        Raises
-        ------
-        TypeError
-            If it does not hold floating-point numbers.
-        GridMismatchError
-            If the shape differs; it is also a `ValueError`.
-        """
-        array = np.asarray(density)
-        if not np.issubdtype(array.dtype, np.floating):
-            raise TypeError(
-                f"`{name}` must hold floating-point numbers, got {array.dtype}; "
-                "convert it with `.astype(float)`."
-            )
-        if array.shape != self.shape:
-            raise GridMismatchError(self.shape, array.shape, name)
-        return np.ascontiguousarray(array, dtype=np.float64)
-
-    def evaluate(self, f: Callable[..., ArrayLike]) -> NDArray[np.float64]:
-        """Values f(ξ1_i, ξ2_j) in a new array of the shape of the grid.
-
-        Raises
-        ------
-        TypeError
-            If the values are not real numbers.
-        GridMismatchError
-            If they do not broadcast to the shape of the grid.
-        """
-        values = np.asarray(f(*self.mesh()))
-        if values.dtype.kind not in "fiub":
-            raise TypeError(f"`f` must return real numbers, got {values.dtype}.")
-        try:
-            return np.broadcast_to(values, self.shape).astype(np.float64, order="C")
-        except ValueError:
-            raise GridMismatchError(self.shape, values.shape, "f") from None
-
     def refined(self) -> PlaneGrid:
         """The same box with twice the cells in each direction."""
         return PlaneGrid(self.half_width, (2 * self.shape[0], 2 * self.shape[1]))
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return the arguments as a JSON-able dictionary."""
-        return {"half_width": list(self.half_widths), "shape": list(self.shape)}
-
-    @classmethod
-    def from_dict(cls, parameters: Mapping[str, Any]) -> PlaneGrid:
-        """Return the grid that `to_dict` described; ValueError for other names."""
-        return construct(cls, "grid", parameters)
 
 
 def plane_of(grid: PlaneGrid | PhaseSpaceGrid) -> PlaneGrid:

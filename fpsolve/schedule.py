@@ -6,12 +6,17 @@ import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
+import numpy as np
+from numpy.typing import NDArray
+
 from fpsolve._checks import check_integer
 
-__all__ = ["Schedule", "make_schedule"]
+__all__ = ["Schedule", "make_schedule", "saved_index"]
 
 # Steps and saving points must fit the span to this many steps.
 FIT = 1e-6
+# How far a saved arclength may be from the one asked for, relative.
+SAME = 1e-9
 
 
 @dataclass(frozen=True)
@@ -106,3 +111,22 @@ def _step_of(s: float, start: float, ds: float, n_steps: int) -> int:
             f"the nearest is {start + step * ds:g}."
         )
     return step
+
+
+def saved_index(saved_s: NDArray[np.float64], s: float) -> int:
+    """Which of the saved arclengths is s.
+
+    Raises
+    ------
+    ValueError
+        If none is, to a relative 1e-9.
+    """
+    if saved_s.size:
+        nearest = int(np.argmin(np.abs(saved_s - s)))
+        if abs(saved_s[nearest] - s) <= SAME * max(1.0, abs(s)):
+            return nearest
+    known = ", ".join(f"{value:g}" for value in saved_s) or "none"
+    raise ValueError(
+        f"`s` must be one of the saved values {known}, got {s:g}; "
+        "add it to `save_at` of the run."
+    )

@@ -14,6 +14,7 @@ from fpsolve import diagnostics
 from fpsolve.decay import DecayRate, fit_decay
 from fpsolve.grids import PhaseSpaceGrid
 from fpsolve.models import LayDownModel
+from fpsolve.schedule import saved_index
 
 if TYPE_CHECKING:
     import xarray
@@ -101,16 +102,8 @@ class Solution:
         ValueError
             If no density was saved at s.
         """
-        if self.saved_s.size:
-            nearest = int(np.argmin(np.abs(self.saved_s - s)))
-            if abs(self.saved_s[nearest] - s) <= 1e-9 * max(1.0, abs(s)):
-                found: Array = self.densities[nearest]
-                return found
-        known = ", ".join(f"{value:g}" for value in self.saved_s) or "none"
-        raise ValueError(
-            f"`s` must be one of the saved values {known}, got {s:g}; "
-            "add it to `save_at` of the run."
-        )
+        found: Array = self.densities[saved_index(self.saved_s, s)]
+        return found
 
     @property
     def final(self) -> Array:

@@ -54,7 +54,7 @@ def test_arrays_are_checked_and_functions_evaluated_on_the_cells():
     assert GRID.check(values.astype(np.float32)).dtype == np.float64
     with pytest.raises(GridMismatchError, match=r"`P` must have the shape \(6, 7\) of"):
         GRID.check(values.T, "P")
-    with pytest.raises(TypeError, match="`density` must hold floating-point numbers"):
+    with pytest.raises(TypeError, match="`p` must hold floating-point numbers"):
         GRID.check(np.ones((6, 7), dtype=int))
     with pytest.raises(TypeError, match="`f` must return real numbers, got complex128"):
         GRID.evaluate(lambda xi1, xi2: xi1 * 1j)

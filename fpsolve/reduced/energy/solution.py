@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fpsolve.reduced.energy.grid import EnergyGrid
+from fpsolve.schedule import saved_index
 
 if TYPE_CHECKING:
     import xarray
@@ -72,11 +73,11 @@ class EnergySolution:
         ValueError
             If nothing was saved at s.
         """
-        return np.asarray(self.densities[self._index(s)])
+        return np.asarray(self.densities[saved_index(self.saved_s, s)])
 
     def mass(self, s: float) -> Array:
         """Cell masses at a saved s, shape (n_cells,); ValueError if none were saved."""
-        return np.asarray(self.masses[self._index(s)])
+        return np.asarray(self.masses[saved_index(self.saved_s, s)])
 
     def mean(self, s: float) -> float:
         """E G at a saved s; of |G| on an unsigned grid."""
@@ -96,15 +97,4 @@ class EnergySolution:
         return (
             f"EnergySolution({self.method}, ds = {self.ds:g}, s = {self.s[-1]:g}, "
             f"{self.grid!r}, {len(self.saved_s)} saved)"
-        )
-
-    def _index(self, s: float) -> int:
-        if self.saved_s.size:
-            nearest = int(np.argmin(np.abs(self.saved_s - s)))
-            if abs(self.saved_s[nearest] - s) <= 1e-9 * max(1.0, abs(s)):
-                return nearest
-        known = ", ".join(f"{value:g}" for value in self.saved_s) or "none"
-        raise ValueError(
-            f"`s` must be one of the saved values {known}, got {s:g}; add it to "
-            "`save_at` of the run."
         )
