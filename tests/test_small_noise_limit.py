@@ -226,7 +226,7 @@ def test_figures_show_a_line_for_every_belt_and_family(study, spectra):
     figure = plot_small_noise([study[0], study[0]])
     assert isinstance(figure, Figure)
     assert len(figure.axes) == 2
-    labels = [text.get_text() for text in figure.axes[1].get_legend().get_texts()]
+    labels = [text.get_text() for text in figure.axes[0].get_legend().get_texts()]
     assert "belt at rest" in labels
     assert any("0.3" in label for label in labels)
     axes = plot_small_noise_spectrum(spectra).axes[0]

@@ -42,15 +42,22 @@ def plot_small_noise(datasets: xr.Dataset | Iterable[xr.Dataset]) -> Figure:
     with paper_style():
         figure = new_figure(COLUMN if len(listed) == 1 else PAGE, 3.1)
         panels = figure.subplots(1, len(listed), sharey=True, squeeze=False)[0]
+        # Panels share their limits.
+        distances = np.concatenate(
+            [one["distance"].to_numpy().ravel() for one in listed]
+        )
+        limits = 0.5 * np.nanmin(distances), 2.0 * np.nanmax(distances)
         for axes, dataset in zip(panels, listed, strict=True):
-            _draw_distances(axes, dataset)
+            _draw_distances(axes, dataset, limits)
             axes.set_title(f"$B$ = {dataset.attrs['formula']}")
         panels[0].set_ylabel(r"distance of the laws of $G$")
-        panels[-1].legend(loc="lower right", fontsize=7)
+        panels[0].legend(loc="upper left", fontsize=7)
     return figure
 
 
-def _draw_distances(axes: Axes, dataset: xr.Dataset) -> None:
+def _draw_distances(
+    axes: Axes, dataset: xr.Dataset, limits: tuple[float, float]
+) -> None:
     for place, w in enumerate(dataset["belt_speed_scale"].to_numpy()):
         one, colour = dataset.isel(belt_speed_scale=place), COLOURS[_COLOURS[place]]
         belt = "belt at rest" if w == 0 else rf"$v = {w:g}\,A^2$"
@@ -60,21 +67,20 @@ def _draw_distances(axes: Axes, dataset: xr.Dataset) -> None:
     still = dataset.isel(belt_speed_scale=0)
     axes.set_xscale("log")
     axes.set_yscale("log")
-    lowest = 0.3 * float(np.nanmin(dataset["distance"]))
-    axes.fill_between(still["noise"], lowest, still["distance_error"],
+    axes.fill_between(still["noise"], limits[0], still["distance_error"],
                       color="0.88", label="error of the cells")  # fmt: skip
     axes.plot(still["noise"], still["paths_distance_by_chance"], ":", color="0.4",
               label="paths by chance")  # fmt: skip
     _draw_slope(axes, still)
-    axes.set_ylim(bottom=lowest)
+    axes.set_ylim(limits)
     _noise_axis(axes, dataset["noise"].to_numpy())
 
 
 def _draw_slope(axes: Axes, one: xr.Dataset) -> None:
-    """A² through the second smallest noise."""
+    """A², beside the distance at the second largest noise."""
     noise = one["noise"].to_numpy()
-    place = max(len(noise) - 2, 0)
-    scale = 2.0 * float(one["distance"][place]) / noise[place] ** 2
+    place = min(1, len(noise) - 1)
+    scale = 0.6 * float(one["distance"][place]) / noise[place] ** 2
     axes.plot(noise, scale * noise**2, "--", color="0.5", linewidth=0.9,
               label=r"$\propto A^2$")  # fmt: skip
 
