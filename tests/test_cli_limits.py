@@ -57,10 +57,10 @@ def test_mistakes_end_with_a_message_and_leave_nothing(call, tmp_path, words, me
 
 
 def test_cases_that_fail_are_named(call, tmp_path, monkeypatch):
-    def broken(self, p, grid):
+    def broken(self, process):
         raise RuntimeError("no luck")
 
-    monkeypatch.setattr(SmoothedLaw, "of_density", broken)
+    monkeypatch.setattr(SmoothedLaw, "__init__", broken)
     result = call(*SMALL, "--out", str(tmp_path))
     assert result.exit_code == 1
     assert "no luck" in result.output + result.stderr
