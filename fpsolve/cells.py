@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from functools import cached_property
 from typing import Any, Self
@@ -16,7 +17,7 @@ from fpsolve.errors import GridMismatchError
 __all__ = ["CellGrid", "cell_centres", "checked_half_width"]
 
 
-class CellGrid:
+class CellGrid(ABC):
     """Equal cells of a box around the origin; the first two directions are ξ1 and ξ2.
 
     Subclasses are frozen dataclasses with the fields `half_width` and `shape` that
@@ -27,13 +28,13 @@ class CellGrid:
     shape: tuple[int, ...]
 
     @property
+    @abstractmethod
     def spacing(self) -> tuple[float, ...]:
         """Widths of a cell."""
-        raise NotImplementedError
 
+    @abstractmethod
     def mesh(self) -> tuple[NDArray[np.float64], ...]:
         """Cell centres, which broadcast to the shape of the grid."""
-        raise NotImplementedError
 
     @property
     def half_widths(self) -> tuple[float, float]:
