@@ -1,5 +1,6 @@
 """Sphinx configuration: MyST pages, numpydoc docstrings, nothing from the network."""
 
+import sys
 import tomllib
 from pathlib import Path
 
@@ -10,14 +11,21 @@ _pyproject = Path(__file__).parents[1] / "pyproject.toml"
 release = tomllib.loads(_pyproject.read_text("utf-8"))["project"]["version"]
 version = release
 
+# Modules of this folder that the configuration names.
+sys.path.insert(0, str(Path(__file__).parent))
+
 extensions = [
     "myst_parser",
     "sphinx.ext.autodoc",
     "sphinx.ext.mathjax",
     "sphinx.ext.napoleon",
     "sphinx.ext.viewcode",
+    "sphinx_gallery.gen_gallery",
+    # Puts MathJax beside the pages, which otherwise load it from the network.
+    "sphinx-mathjax-offline",
 ]
-exclude_patterns = ["_build"]
+# Scripts of the gallery become pages in `figures`, which is not kept.
+exclude_patterns = ["_build", "gallery", "sg_execution_times.rst"]
 html_theme = "furo"
 html_title = f"fpsolve {release}"
 html_static_path = ["_static"]
@@ -25,6 +33,25 @@ html_static_path = ["_static"]
 # $…$ and $$…$$ for formulas, and anchors for headings down to the third level.
 myst_enable_extensions = ["dollarmath"]
 myst_heading_anchors = 3
+
+# Every script is run when the pages are built; one that fails fails the build.
+sphinx_gallery_conf = {
+    "examples_dirs": "gallery",
+    "gallery_dirs": "figures",
+    "filename_pattern": r"\.py$",
+    "ignore_pattern": r"__init__\.py",
+    "abort_on_example_error": True,
+    "image_scrapers": ("figure_scraper",),
+    "reset_modules": (),
+    "capture_repr": (),
+    "within_subsection_order": "FileNameSortKey",
+    "download_all_examples": False,
+    "show_signature": False,
+    "write_computation_times": False,
+    "min_reported_time": 1e9,
+    "thumbnail_size": (400, 280),
+    "nested_sections": False,
+}
 
 # Types are in the signatures; "Attributes" of a class becomes a list, because its
 # members are documented a second time otherwise.

@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from fpsolve import diagnostics, errors, initial, interop, paths, plotting, studies
+    from fpsolve.checkpoints import Checkpoint
+    from fpsolve.comparisons import Comparison, compare
     from fpsolve.curves import (
         EllipticNozzle,
         FixedBelt,
@@ -22,6 +24,8 @@ if TYPE_CHECKING:
         TabulatedCurve,
     )
     from fpsolve.errors import (
+        CheckpointError,
+        CheckpointMismatchError,
         ConfigurationError,
         DomainTooSmallError,
         FileFormatError,
@@ -33,6 +37,7 @@ if TYPE_CHECKING:
         NegativeDensityError,
         NonFiniteDensityError,
         NonFinitePathError,
+        NotRepeatableError,
         RunInterrupted,
         SteadyStateError,
     )
@@ -53,6 +58,9 @@ if TYPE_CHECKING:
     from fpsolve.process import Process
     from fpsolve.reduced.energy import EnergyProcess
     from fpsolve.reduced.hydrodynamic import HydrodynamicLimit, OrnsteinUhlenbeckLimit
+    from fpsolve.report import report
+    from fpsolve.rerunning import rerun
+    from fpsolve.resuming import resume
     from fpsolve.schemes import drift_kick, semi_lagrangian
     from fpsolve.solution import Solution
     from fpsolve.solve import solve
@@ -66,15 +74,18 @@ if TYPE_CHECKING:
     from fpsolve.suggestions import suggest_grid, suggest_step
 
 _MODULES = {
+    "fpsolve.checkpoints": "Checkpoint",
+    "fpsolve.comparisons": "Comparison compare",
     "fpsolve.curves": (
         "EllipticNozzle FixedBelt MovingBelt OscillatingNozzle RotatingNozzle "
         "TabulatedCurve"
     ),
     "fpsolve.errors": (
+        "CheckpointError CheckpointMismatchError "
         "ConfigurationError DomainTooSmallError FileFormatError FpsolveError "
         "GridMismatchError MassCorrectionError MassDriftError MemoryLimitError "
-        "NegativeDensityError NonFiniteDensityError NonFinitePathError RunInterrupted "
-        "SteadyStateError"
+        "NegativeDensityError NonFiniteDensityError NonFinitePathError "
+        "NotRepeatableError RunInterrupted SteadyStateError"
     ),
     "fpsolve.grids": "PhaseSpaceGrid",
     "fpsolve.interop": "from_pde_field to_pde_field",
@@ -89,6 +100,9 @@ _MODULES = {
     "fpsolve.process": "Process",
     "fpsolve.reduced.energy": "EnergyProcess",
     "fpsolve.reduced.hydrodynamic": "HydrodynamicLimit OrnsteinUhlenbeckLimit",
+    "fpsolve.resuming": "resume",
+    "fpsolve.report": "report",
+    "fpsolve.rerunning": "rerun",
     "fpsolve.schemes": "drift_kick semi_lagrangian",
     "fpsolve.solution": "Solution",
     "fpsolve.solve": "solve",
@@ -108,6 +122,10 @@ _HOME = {name: home for home, names in _MODULES.items() for name in names.split(
 
 __all__ = [
     "CallablePotential",
+    "Checkpoint",
+    "CheckpointError",
+    "CheckpointMismatchError",
+    "Comparison",
     "ConfigurationError",
     "DomainTooSmallError",
     "EllipticNozzle",
@@ -128,6 +146,7 @@ __all__ = [
     "NegativeDensityError",
     "NonFiniteDensityError",
     "NonFinitePathError",
+    "NotRepeatableError",
     "OptimalNoise",
     "OrnsteinUhlenbeckLimit",
     "OscillatingNozzle",
@@ -147,6 +166,7 @@ __all__ = [
     "SteadyState",
     "SteadyStateError",
     "TabulatedCurve",
+    "compare",
     "diagnostics",
     "drift_kick",
     "errors",
@@ -157,6 +177,9 @@ __all__ = [
     "optimal_noise",
     "paths",
     "plotting",
+    "report",
+    "rerun",
+    "resume",
     "sample_paths",
     "semi_lagrangian",
     "solve",

@@ -10,29 +10,62 @@ from __future__ import annotations
 import inspect
 import math
 import operator
-from collections.abc import Mapping
+import os
+from collections.abc import Iterable, Mapping
+from pathlib import Path
 from typing import Any, TypeVar
 
 __all__ = [
+    "check_call",
     "check_finite",
+    "check_flag",
     "check_integer",
+    "check_kind",
     "check_non_negative",
+    "check_one_of",
+    "check_pair",
+    "check_path",
     "check_positive",
     "check_real",
+    "check_tolerance",
     "construct",
+    "has_length",
+    "shown",
 ]
 
 T = TypeVar("T")
+
+# What a message shows of a value; more would bury the message.
+_LONGEST = 80
+
+
+def shown(value: Any) -> str:
+    """Return the repr of a value on one line, or its kind where that is long."""
+    text = " ".join(repr(value).split())
+    if len(text) <= _LONGEST:
+        return text
+    kind, shape = type(value).__name__, getattr(value, "shape", None)
+    return f"{text[:_LONGEST]}… ({kind})" if shape is None else f"{kind} of {shape}"
 
 
 def check_real(name: str, value: Any) -> float:
     """Return `value` as a float; TypeError when it is not a real number."""
     try:
-        if isinstance(value, str | bytes | bool):
+        if isinstance(value, str | bytes | bytearray | bool):
+            raise TypeError
+        # Of numpy's scalars and arrays without a dimension, booleans and complex
+        # numbers would pass, the latter with a warning.
+        if getattr(getattr(value, "dtype", None), "kind", "f") not in "iuf":
             raise TypeError
         return float(value)
     except (TypeError, ValueError):
-        raise TypeError(f"`{name}` must be a real number, got {value!r}.") from None
+        raise TypeError(
+            f"`{name}` must be a real number, got {shown(value)}."
+        ) from None
+    except OverflowError:
+        raise ValueError(
+            f"`{name}` must be finite, got a number of {len(str(value))} digits."
+        ) from None
 
 
 def check_finite(name: str, value: Any) -> float:
@@ -63,16 +96,85 @@ def check_non_negative(name: str, value: Any, remedy: str = "") -> float:
     return number
 
 
-def check_integer(name: str, value: Any, at_least: int) -> int:
-    """Return `value` as an int; ValueError when it is below `at_least`."""
+def check_pair(name: str, value: Any) -> tuple[float, float]:
+    """Return two finite floats; ValueError unless there are two, TypeError else."""
+    if not has_length(value, 2):
+        raise ValueError(f"`{name}` must be two numbers, got {shown(value)}.")
+    first, second = value
+    return check_finite(name, first), check_finite(name, second)
+
+
+def has_length(value: Any, n: int) -> bool:
+    """Whether the value is a tuple, a list or an array of n entries, in order."""
+    if hasattr(value, "shape"):
+        return tuple(value.shape) == (n,)
+    return isinstance(value, tuple | list) and len(value) == n
+
+
+def check_tolerance(name: str, value: Any, remedy: str = "") -> float:
+    """Return `value` as a float; ValueError unless 0 < value, infinity included."""
+    number = check_real(name, value)
+    if not number > 0:
+        raise ValueError(f"`{name}` must be positive, got {number:g}{remedy}.")
+    return number
+
+
+def check_flag(name: str, value: Any) -> bool:
+    """Return `value` as a bool; TypeError for anything else, "no" above all."""
+    # Of numpy, too, whose boolean has two names.
+    if type(value).__name__ in ("bool", "bool_"):
+        return bool(value)
+    raise TypeError(f"`{name}` must be True or False, got {shown(value)}.")
+
+
+def check_kind(name: str, value: Any, kind: type, remedy: str = "") -> None:
+    """Raise TypeError unless `value` is an instance of `kind`."""
+    if not isinstance(value, kind):
+        article = "an" if kind.__name__[0] in "AEIOU" else "a"
+        hint = f"; {remedy}" if remedy else ""
+        raise TypeError(
+            f"`{name}` must be {article} {kind.__name__}, got {shown(value)}{hint}."
+        )
+
+
+def check_one_of(name: str, value: Any, known: Iterable[str]) -> None:
+    """Raise ValueError unless `value` is one of the known names."""
+    names = list(known)
+    if value not in names:
+        choices = ", ".join(map(repr, names))
+        raise ValueError(f"`{name}` must be one of {choices}, got {shown(value)}.")
+
+
+def check_call(name: str, value: Any, example: str) -> None:
+    """Raise TypeError unless `value` can be called; `example` shows how it will be."""
+    if not callable(value):
+        raise TypeError(f"`{name}` must be callable as {example}, got {shown(value)}.")
+
+
+def check_path(name: str, value: Any) -> Path:
+    """Return `value` as a path; TypeError or ValueError unless it names a file."""
+    if not isinstance(value, str | os.PathLike) or isinstance(os.fspath(value), bytes):
+        raise TypeError(f"`{name}` must be the name of a file, got {shown(value)}.")
+    path = Path(value)
+    if not os.fspath(value) or "\0" in str(path):
+        raise ValueError(f"`{name}` must be the name of a file, got {value!r}.")
+    return path
+
+
+def check_integer(
+    name: str, value: Any, at_least: int, at_most: int | None = None
+) -> int:
+    """Return `value` as an int; ValueError below `at_least` or above `at_most`."""
     try:
         if isinstance(value, bool):
             raise TypeError
         number = operator.index(value)
     except TypeError:
-        raise TypeError(f"`{name}` must be an integer, got {value!r}.") from None
+        raise TypeError(f"`{name}` must be an integer, got {shown(value)}.") from None
     if number < at_least:
         raise ValueError(f"`{name}` must be at least {at_least}, got {number}.")
+    if at_most is not None and number > at_most:
+        raise ValueError(f"`{name}` must be at most {at_most}, got {number}.")
     return number
 
 

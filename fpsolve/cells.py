@@ -11,10 +11,16 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from fpsolve._checks import check_positive, construct
+from fpsolve._arrays import check_floats
+from fpsolve._checks import check_call, check_positive, construct, has_length
 from fpsolve.errors import GridMismatchError
 
 __all__ = ["CellGrid", "cell_centres", "checked_half_width"]
+
+
+# Half widths beyond this range overflow or underflow in moments.
+_NARROWEST = 1e-30
+_ARGUMENTS = ("xi1", "xi2", "alpha")
 
 
 class CellGrid(ABC):
@@ -80,12 +86,7 @@ class CellGrid(ABC):
         GridMismatchError
             If the shape differs; it is also a `ValueError`.
         """
-        array = np.asarray(p)
-        if not np.issubdtype(array.dtype, np.floating):
-            raise TypeError(
-                f"`{name}` must hold floating-point numbers, got {array.dtype}; "
-                "convert it with `.astype(float)`."
-            )
+        array = check_floats(name, p)
         if array.shape != self.shape:
             raise GridMismatchError(self.shape, array.shape, name)
         return np.ascontiguousarray(array, dtype=np.float64)
@@ -106,6 +107,7 @@ class CellGrid(ABC):
         GridMismatchError
             If they do not broadcast to the shape of the grid.
         """
+        check_call("f", f, f"f({', '.join(_ARGUMENTS[: len(self.shape)])})")
         values = np.asarray(f(*self.mesh()))
         if values.dtype.kind not in "fiub":
             raise TypeError(f"`f` must return real numbers, got {values.dtype}.")
@@ -133,11 +135,22 @@ def cell_centres(start: float, step: float, n: int) -> NDArray[np.float64]:
 
 def checked_half_width(half_width: Any) -> float | tuple[float, float]:
     """Return one float when both are equal, so that equal grids compare equal."""
-    if np.ndim(half_width) == 0:
-        return check_positive("half_width", half_width)
-    if len(half_width) != 2:
+    if not (isinstance(half_width, tuple | list) or np.ndim(half_width)):
+        return _width(half_width)
+    if not has_length(half_width, 2):
         raise ValueError(
             f"`half_width` must be one number or two, got {len(half_width)} of them."
         )
-    width1, width2 = (check_positive("half_width", width) for width in half_width)
+    width1, width2 = (_width(width) for width in half_width)
     return width1 if width1 == width2 else (width1, width2)
+
+
+def _width(half_width: Any) -> float:
+    width = check_positive("half_width", half_width)
+    # Squares of it are areas and second moments.
+    if not _NARROWEST <= width <= 1 / _NARROWEST:
+        raise ValueError(
+            f"`half_width` must lie between {_NARROWEST:g} and {1 / _NARROWEST:g}, got "
+            f"{width:g}; lengths are in units of the throwing range."
+        )
+    return width

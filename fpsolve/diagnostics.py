@@ -8,8 +8,11 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
+from fpsolve._arrays import check_finite_numbers, check_numbers
+from fpsolve._checks import check_non_negative, check_one_of
 from fpsolve._kernels.functionals import N_FUNCTIONALS, row_functionals
-from fpsolve.grids import PhaseSpaceGrid
+from fpsolve.errors import GridMismatchError
+from fpsolve.grids import PhaseSpaceGrid, check_grid
 
 __all__ = [
     "boundary_mass",
@@ -43,8 +46,14 @@ MIDPOINT = (1225 / 2048, -245 / 2048, 49 / 2048, -5 / 2048)
 
 
 def mass(p: Array, grid: PhaseSpaceGrid) -> float:
-    """∫ p dξ dα by the midpoint rule, one for a probability density."""
-    return float(np.sum(p)) * grid.cell_volume
+    """∫ p dξ dα by the midpoint rule, one for a probability density.
+
+    Parameters
+    ----------
+    p : ndarray, shape (n1, n2, n_alpha)
+    grid : PhaseSpaceGrid
+    """
+    return float(checked(p, grid).sum()) * grid.cell_volume
 
 
 def boundary_mass(p: Array, grid: PhaseSpaceGrid) -> float:
@@ -52,8 +61,13 @@ def boundary_mass(p: Array, grid: PhaseSpaceGrid) -> float:
 
     The box is periodic, so what arrives there re-enters on the other side: a run is
     meaningful as long as this number is negligible.
+
+    Parameters
+    ----------
+    p : ndarray, shape (n1, n2, n_alpha)
+    grid : PhaseSpaceGrid
     """
-    return ring_share(np.abs(np.asarray(p)).sum(axis=2))
+    return ring_share(np.abs(checked(p, grid)).sum(axis=2))
 
 
 def ring_share(plane: Array) -> float:
@@ -64,12 +78,30 @@ def ring_share(plane: Array) -> float:
 
 
 def negative_mass(p: Array, grid: PhaseSpaceGrid) -> float:
-    """∫ max(−p, 0) dξ dα: how much of a density is unphysical undershoot."""
-    return float(np.maximum(-np.asarray(p), 0.0).sum()) * grid.cell_volume
+    """∫ max(−p, 0) dξ dα: how much of a density is unphysical undershoot.
+
+    Parameters
+    ----------
+    p : ndarray, shape (n1, n2, n_alpha)
+    grid : PhaseSpaceGrid
+    """
+    return float(np.maximum(-checked(p, grid), 0.0).sum()) * grid.cell_volume
 
 
 def marginal(p: Array, grid: PhaseSpaceGrid, which: str = "xi") -> Array:
-    """∫ p over the other variables: "xi" (n1, n2), "alpha", "xi1" or "xi2" (1-D)."""
+    """∫ p over the other variables, a density of those that are named.
+
+    Parameters
+    ----------
+    p : ndarray, shape (n1, n2, n_alpha)
+    grid : PhaseSpaceGrid
+    which : str
+        "xi", "alpha", "xi1" or "xi2".
+
+    Returns
+    -------
+    ndarray, shape (n1, n2), (n_alpha,), (n1,) or (n2,)
+    """
     d1, d2, d_alpha = grid.spacing
     integrals = {
         "xi": ((2,), d_alpha),
@@ -77,40 +109,61 @@ def marginal(p: Array, grid: PhaseSpaceGrid, which: str = "xi") -> Array:
         "xi1": ((1, 2), d2 * d_alpha),
         "xi2": ((0, 2), d1 * d_alpha),
     }
-    if which not in integrals:
-        known = ", ".join(repr(name) for name in integrals)
-        raise ValueError(f"`which` must be one of {known}, got {which!r}.")
+    check_one_of("which", which, integrals)
     axes, measure = integrals[which]
     result: Array = np.asarray(p).sum(axis=axes) * measure
     return result
 
 
 def moments(p: Array, grid: PhaseSpaceGrid) -> dict[str, float]:
-    """E ξ, the covariance of ξ, E cos α and E sin α, of the normalised density."""
-    return moments_of_rows(functionals(p, grid), grid)
+    """E ξ, the covariance of ξ, E cos α and E sin α, of the normalised density.
+
+    Parameters
+    ----------
+    p : ndarray, shape (n1, n2, n_alpha)
+    grid : PhaseSpaceGrid
+
+    Returns
+    -------
+    dict of str to float
+        mean_xi1, mean_xi2, variance_xi1, variance_xi2, covariance, mean_cos_alpha and
+        mean_sin_alpha.
+    """
+    return moments_of_rows(functionals(checked(p, grid), grid), grid)
 
 
-def functionals(p: Array, grid: PhaseSpaceGrid) -> Array:
-    """Sums over α for every ξ; shape (n1, n2, 6), see the kernel."""
+def functionals(p: Array, grid: PhaseSpaceGrid, inverse: Array | None = None) -> Array:
+    """Sums over α for every ξ; shape (n1, n2, 7), see the kernel.
+
+    The last is Σ p ln(p inverse), inverse (n1, n2), and zero without it.
+    """
     out = np.empty((*grid.shape[:2], N_FUNCTIONALS))
-    row_functionals(p, np.cos(grid.alpha), np.sin(grid.alpha), out)
+    inverse = np.ones((1, 1)) if inverse is None else inverse
+    row_functionals(p, np.cos(grid.alpha), np.sin(grid.alpha), inverse, out)
     return out
+
+
+def inverse_of(reference: Array, ratio: float) -> Array:
+    """1/(ratio r), what `functionals` multiplies p by."""
+    inverse: Array = 1.0 / np.maximum(reference * ratio, SMALLEST)
+    return inverse
 
 
 def moments_of_rows(rows: Array, grid: PhaseSpaceGrid) -> dict[str, float]:
     """Moments from the row functionals."""
-    xi1, xi2 = grid.plane()
-    share = rows[:, :, 0] / rows[:, :, 0].sum()
-    mean1, mean2 = float((share * xi1).sum()), float((share * xi2).sum())
-    away1, away2 = xi1 - mean1, xi2 - mean2
+    total = rows[:, :, 0].sum()
+    share = rows[:, :, 0] / total
+    share1, share2 = share.sum(axis=1), share.sum(axis=0)
+    mean1, mean2 = float((share1 * grid.xi1).sum()), float((share2 * grid.xi2).sum())
+    away1, away2 = grid.xi1 - mean1, grid.xi2 - mean2
     values = (
         mean1,
         mean2,
-        float((share * away1**2).sum()),
-        float((share * away2**2).sum()),
-        float((share * away1 * away2).sum()),
-        float(rows[:, :, 1].sum() / rows[:, :, 0].sum()),
-        float(rows[:, :, 2].sum() / rows[:, :, 0].sum()),
+        float((share1 * away1**2).sum()),
+        float((share2 * away2**2).sum()),
+        float(((share * away2).sum(axis=1) * away1).sum()),
+        float(rows[:, :, 1].sum() / total),
+        float(rows[:, :, 2].sum() / total),
     )
     return dict(zip(MOMENTS, values, strict=True))
 
@@ -118,10 +171,10 @@ def moments_of_rows(rows: Array, grid: PhaseSpaceGrid) -> dict[str, float]:
 def relative_entropy(p: Array, grid: PhaseSpaceGrid, reference: Array) -> float:
     """H(p|r) = ∫ p ln(p/r) dξ dα (11), natural logarithm.
 
-    Computed as ∫ [p ln(p/r′) − p + r′] + M ln(M/S), where r′ = r M/S has the mass M
-    of p on this grid and S is that of r: every cell of the integral is then
-    non-negative, and an entropy of 1e-16 still has correct digits. Cells with p ≤ 0
-    contribute r′ − p, the limit of small p; look at the minimum beside it.
+    Computed as ∫ p ln(p/r′) + M ln(M/S), where r′ = r M/S has the mass M of p on this
+    grid and S is that of r: the logarithms are then as small as p is near r′, and an
+    entropy of 1e-16 still has correct digits. Cells with p ≤ 0 contribute nothing,
+    the limit of small p; look at the minimum beside it.
 
     Parameters
     ----------
@@ -129,28 +182,39 @@ def relative_entropy(p: Array, grid: PhaseSpaceGrid, reference: Array) -> float:
     grid : PhaseSpaceGrid
     reference : ndarray, shape (n1, n2) or (n1, n2, n_alpha)
         Usually p_S = `model.equilibrium(*grid.plane())`, normalised on R² × [0, 2π).
+
+    References
+    ----------
+    [KMW09]_, remark 3.2, equation (11).
     """
-    reference = as_field(reference)
+    p, reference = checked(p, grid), as_field(reference, grid)
     masses = np.sum(p), reference_sum(reference, grid)
-    ratio = float(masses[0] / masses[1])
+    ratio = float(masses[0] / masses[1]) if masses[1] > 0 else math.nan
     if not ratio > 0:
         # No entropy without mass; the run's own checks say what went wrong.
         return math.nan
-    total = 0.0
-    for part in slabs(grid):
-        total += entropy_of_slab(p[part], reference[part] * ratio)
+    if reference.shape[2] == 1:
+        inverse = inverse_of(reference[:, :, 0], ratio)
+        return entropy_of_rows(functionals(p, grid, inverse), grid, ratio)
+    total = sum(entropy_of_slab(p[k], reference[k] * ratio) for k in slabs(grid))
     return (total + float(masses[0]) * math.log(ratio)) * grid.cell_volume
 
 
+def entropy_of_rows(rows: Array, grid: PhaseSpaceGrid, ratio: float) -> float:
+    """H(p|r) from row functionals made with `inverse_of(r, ratio)`."""
+    total = float(rows[:, :, 0].sum())
+    if not (total > 0.0 and ratio > 0.0):
+        return math.nan
+    return (float(rows[:, :, 6].sum()) + total * math.log(ratio)) * grid.cell_volume
+
+
 def entropy_of_slab(p: Array, reference: Array) -> float:
-    """Σ p ln(p/r) − p + r over some planes."""
-    inverse = 1.0 / np.maximum(reference, SMALLEST)
-    logarithm: Array = p * inverse
+    """Σ p ln(p/r) − p + r over some planes; r depends on α."""
+    logarithm: Array = p * inverse_of(reference, 1.0)
     np.maximum(logarithm, SMALLEST, out=logarithm)
     np.log(logarithm, out=logarithm)
     positive = np.einsum("ijk,ijk->", np.maximum(p, 0.0), logarithm)
-    repeats = p.shape[2] // reference.shape[2]
-    return float(positive - p.sum() + reference.sum() * repeats)
+    return float(positive - p.sum() + reference.sum())
 
 
 def entropy_floor(
@@ -160,8 +224,15 @@ def entropy_floor(
 
     S is the mass of the reference on this grid; it differs from 1 by what the box
     cuts off and by the quadrature error. H tends to this value, not to zero.
+
+    Parameters
+    ----------
+    grid : PhaseSpaceGrid
+    reference : ndarray, shape (n1, n2) or (n1, n2, n_alpha)
+    total_mass : float
+        M, the mass of the density.
     """
-    reference = as_field(reference)
+    reference = as_field(reference, grid)
     total = reference_sum(reference, grid) * grid.cell_volume
     return total_mass * math.log(total_mass / total)
 
@@ -173,8 +244,22 @@ def entropy_dissipation(
 
     Written as 2A² ∫ r (∂_α √(p/r))², which needs no logarithm and no division by p.
     A reference that does not depend on α (the default) drops out.
+
+    Parameters
+    ----------
+    p : ndarray, shape (n1, n2, n_alpha)
+    grid : PhaseSpaceGrid
+    noise : float
+        A.
+    reference : ndarray, shape (n1, n2) or (n1, n2, n_alpha), optional
+        r.
+
+    References
+    ----------
+    [KMW09]_, remark 3.2.
     """
-    if reference is None or as_field(reference).shape[2] == 1:
+    p, noise = checked(p, grid), check_non_negative("noise", noise)
+    if reference is None or as_field(reference, grid).shape[2] == 1:
         return dissipation_of_rows(functionals(p, grid), grid, noise)
     root = np.sqrt(np.maximum(p, 0.0) / np.maximum(reference, SMALLEST))
     slope, weight = staggered(root, DIFFERENCE, -1.0), staggered(reference, MIDPOINT, 1)
@@ -197,14 +282,44 @@ def staggered(q: Array, weights: tuple[float, ...], sign: float) -> Array:
 
 
 def l1_distance(p: Array, q: Array, grid: PhaseSpaceGrid) -> float:
-    """∫ |p − q| dξ dα by the midpoint rule."""
-    return float(np.abs(np.asarray(p) - q).sum()) * grid.cell_volume
+    """∫ |p − q| dξ dα by the midpoint rule.
+
+    Parameters
+    ----------
+    p, q : ndarray, shape (n1, n2, n_alpha)
+    grid : PhaseSpaceGrid
+    """
+    return float(np.abs(checked(p, grid) - q).sum()) * grid.cell_volume
 
 
-def as_field(reference: Array) -> Array:
+def checked(p: Array, grid: PhaseSpaceGrid) -> Array:
+    """The density, of the shape of the grid; NaN in it shows in what is read off."""
+    check_grid(grid)
+    return grid.check(p)
+
+
+def checked_reference(reference: Array, grid: PhaseSpaceGrid) -> Array:
+    """A reference that is finite, not negative and has mass, as (n1, n2, …)."""
+    reference = check_finite_numbers("reference", reference)
+    as_field(reference, grid)
+    if not (reference.min() >= 0 and reference.max() > 0):
+        raise ValueError(
+            "`reference` must be non-negative with positive mass, got values from "
+            f"{reference.min():g} to {reference.max():g}; the entropy is relative to "
+            "a density."
+        )
+    return reference
+
+
+def as_field(reference: Array, grid: PhaseSpaceGrid) -> Array:
     """A reference as (n1, n2, 1) or (n1, n2, n_alpha)."""
-    reference = np.asarray(reference, dtype=np.float64)
-    return reference[:, :, None] if reference.ndim == 2 else reference
+    check_grid(grid)
+    reference = check_numbers("reference", reference)
+    if reference.shape == grid.shape[:2]:
+        return reference[:, :, None]
+    if reference.shape not in (grid.shape, (*grid.shape[:2], 1)):
+        raise GridMismatchError(grid.shape, reference.shape, "reference")
+    return reference
 
 
 def reference_sum(reference: Array, grid: PhaseSpaceGrid) -> float:

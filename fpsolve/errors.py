@@ -13,6 +13,8 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 __all__ = [
+    "CheckpointError",
+    "CheckpointMismatchError",
     "ConfigurationError",
     "DomainTooSmallError",
     "FileFormatError",
@@ -24,6 +26,7 @@ __all__ = [
     "NegativeDensityError",
     "NonFiniteDensityError",
     "NonFinitePathError",
+    "NotRepeatableError",
     "RunError",
     "RunInterrupted",
     "SteadyStateError",
@@ -268,6 +271,55 @@ class MemoryLimitError(FpsolveError):
         )
         self.required = required
         self.available = available
+
+
+class NotRepeatableError(FpsolveError, ValueError):
+    """A result does not say how it was made, or was made with a user's own code."""
+
+
+class CheckpointError(RunError):
+    """A checkpoint could not be written; the last good one is kept.
+
+    Parameters
+    ----------
+    path : str or os.PathLike
+        File or folder.
+    reason : str
+        What the operating system says, without a final full stop.
+    remedy : str
+        What is kept, and how to go on.
+    """
+
+    def __init__(self, path: str | os.PathLike[str], reason: str, remedy: str) -> None:
+        super().__init__(
+            f"checkpoint `{os.fspath(path)}` cannot be written: {reason}; {remedy}."
+        )
+        self.path = path
+        self.reason = reason
+        self.remedy = remedy
+
+
+class CheckpointMismatchError(FpsolveError, ValueError):
+    """A folder holds the checkpoint of another run.
+
+    Parameters
+    ----------
+    directory : str or os.PathLike
+        The folder.
+    differences : sequence of str
+        One for every argument that differs, with both values.
+    """
+
+    def __init__(
+        self, directory: str | os.PathLike[str], differences: Sequence[str]
+    ) -> None:
+        super().__init__(
+            f"checkpoint `{os.fspath(directory)}` is of another run: "
+            f"{', '.join(differences)}; use the arguments of that run, or name "
+            "another folder, or remove this one to begin anew."
+        )
+        self.directory = directory
+        self.differences = tuple(differences)
 
 
 class SteadyStateError(FpsolveError):

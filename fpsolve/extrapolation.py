@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
 from fpsolve import diagnostics
+from fpsolve.densities import CombinedDensities, LazyDensities
 from fpsolve.solution import Solution
 
 __all__ = ["extrapolated"]
@@ -51,15 +53,26 @@ def extrapolated(coarse: Solution, fine: Solution, order: int) -> Solution:
         gain * diagnostics.l1_distance(p, q, fine.grid)
         for p, q in zip(fine.densities, coarse.densities, strict=True)
     ]
-    densities = fine.densities
-    densities *= 1.0 + gain
-    coarse.densities[...] *= gain
-    densities -= coarse.densities
     errors["density_l1"] = np.array(distances)
     provenance = dict(fine.provenance)
     for name in ("wall_seconds", "cpu_seconds", "n_steps"):
         provenance[name] = fine.provenance[name] + coarse.provenance[name]
     provenance["extrapolated"] = True
     return replace(
-        fine, ds=coarse.ds, series=series, errors=errors, provenance=provenance
+        fine,
+        ds=coarse.ds,
+        densities=_combined(fine.densities, coarse.densities, gain),
+        series=series,
+        errors=errors,
+        provenance=provenance,
     )
+
+
+def _combined(fine: Any, coarse: Any, gain: float) -> Any:
+    """(1 + g) p − g q in the memory of both, or when it is read."""
+    if isinstance(fine, LazyDensities):
+        return CombinedDensities(fine, coarse, gain)
+    fine *= 1.0 + gain
+    coarse *= gain
+    fine -= coarse
+    return fine

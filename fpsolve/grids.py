@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve._checks import check_integer
+from fpsolve._checks import check_integer, check_kind, has_length, shown
 from fpsolve.cells import CellGrid, cell_centres, checked_half_width
 
-__all__ = ["PhaseSpaceGrid"]
+__all__ = ["PhaseSpaceGrid", "check_grid"]
 
 _AXES = ("n_xi1", "n_xi2", "n_alpha")
 # Four cells are what a cubic interpolant needs; below that no scheme works.
@@ -98,10 +98,17 @@ class PhaseSpaceGrid(CellGrid):
         return self.xi1[:, None], self.xi2[None, :]
 
 
+def check_grid(grid: Any, name: str = "grid") -> None:
+    """Raise TypeError unless `grid` is one of phase space."""
+    remedy = "make one by PhaseSpaceGrid(half_width, shape)"
+    check_kind(name, grid, PhaseSpaceGrid, remedy)
+
+
 def _checked_shape(shape: Any) -> tuple[int, int, int]:
-    if np.ndim(shape) != 1 or len(shape) != 3:
+    if not has_length(shape, 3):
         raise ValueError(
-            f"`shape` must be three integers (n_xi1, n_xi2, n_alpha), got {shape!r}."
+            f"`shape` must be three integers (n_xi1, n_xi2, n_alpha), got "
+            f"{shown(shape)}."
         )
     n_xi1, n_xi2, n_alpha = (
         check_integer(f"shape[{axis}] ({name})", n, _FEWEST_CELLS)

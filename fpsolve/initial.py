@@ -11,8 +11,15 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.special import i0e
 
-from fpsolve._checks import check_finite, check_non_negative
-from fpsolve.grids import PhaseSpaceGrid
+from fpsolve._arrays import check_numbers
+from fpsolve._checks import (
+    check_call,
+    check_finite,
+    check_kind,
+    check_non_negative,
+    check_pair,
+)
+from fpsolve.grids import PhaseSpaceGrid, check_grid
 from fpsolve.potentials import Potential
 
 __all__ = ["equilibrium", "from_function", "gaussian"]
@@ -62,6 +69,7 @@ def gaussian(
         If the sampled density misses its mass by more than 1 % before normalisation:
         it is cut by the box or too narrow for the cells.
     """
+    check_grid(grid)
     mean1, mean2 = _checked_mean(grid, mean)
     covariance = checked_covariance(variance)
     precision = np.linalg.inv(covariance)
@@ -91,7 +99,13 @@ def equilibrium(grid: PhaseSpaceGrid, potential: Potential) -> NDArray[np.float6
     Returns
     -------
     ndarray, shape ``grid.shape``
+
+    References
+    ----------
+    [KMW09]_, equation (10).
     """
+    check_grid(grid)
+    check_kind("potential", potential, Potential, "for instance QuadraticPotential()")
     value = potential.value(*grid.plane())
     # Only differences of B matter here, and the shift keeps exp from underflowing.
     weight = np.exp(value.min() - value)
@@ -119,6 +133,8 @@ def from_function(
     ValueError
         If `f` is negative or not finite somewhere, or zero everywhere.
     """
+    check_grid(grid)
+    check_call("f", f, "f(xi1, xi2, alpha)")
     p = grid.evaluate(f)
     if not np.all(np.isfinite(p)):
         raise ValueError("`f` must be finite on the grid, got NaN or infinity.")
@@ -141,6 +157,8 @@ def _von_mises(
 ) -> NDArray[np.float64]:
     """exp(κ cos(α - α0))/(2π I0(κ)), without overflow for large κ."""
     concentration = check_non_negative("concentration", concentration)
+    if angle is not None:
+        angle = check_finite("angle", angle)
     if concentration == 0:
         return np.full_like(alpha, 1 / (2 * math.pi))
     if angle is None:
@@ -148,15 +166,13 @@ def _von_mises(
             f"`angle` must be given when `concentration` is positive, got None with "
             f"concentration {concentration:g}."
         )
-    away = alpha - check_finite("angle", angle)
+    away = alpha - angle
     scale = 2 * math.pi * float(i0e(concentration))
     return np.asarray(np.exp(concentration * (np.cos(away) - 1)) / scale)
 
 
 def _checked_mean(grid: PhaseSpaceGrid, mean: Any) -> tuple[float, float]:
-    if np.shape(mean) != (2,):
-        raise ValueError(f"`mean` must be two numbers, got {mean!r}.")
-    mean1, mean2 = (check_finite("mean", component) for component in mean)
+    mean1, mean2 = check_pair("mean", mean)
     width1, width2 = grid.half_widths
     if not (abs(mean1) < width1 and abs(mean2) < width2):
         raise ValueError(
@@ -168,7 +184,7 @@ def _checked_mean(grid: PhaseSpaceGrid, mean: Any) -> tuple[float, float]:
 
 def checked_covariance(variance: ArrayLike) -> NDArray[np.float64]:
     """Return the 2x2 covariance matrix; ValueError unless positive definite."""
-    given = np.asarray(variance, dtype=np.float64)
+    given = check_numbers("variance", variance)
     if given.shape not in ((), (2,), (2, 2)):
         raise ValueError(
             "`variance` must be one number, two, or a 2x2 matrix, got shape "
@@ -176,7 +192,11 @@ def checked_covariance(variance: ArrayLike) -> NDArray[np.float64]:
         )
     matrix = given if given.ndim == 2 else np.diag(np.broadcast_to(given, (2,)))
     symmetric = np.allclose(matrix, matrix.T, rtol=1e-12, atol=0.0)
-    if not (symmetric and matrix[0, 0] > 0 and np.linalg.det(matrix) > 0):
+    # Products of numbers as large as floating-point allows are not finite.
+    with np.errstate(over="ignore", invalid="ignore"):
+        determinant = float(np.linalg.det(matrix))
+    finite = bool(np.isfinite(matrix).all())
+    if not (finite and symmetric and matrix[0, 0] > 0 and 0 < determinant < math.inf):
         raise ValueError(
             "`variance` must be positive, as a matrix symmetric and positive definite, "
             f"got {given.tolist()}."

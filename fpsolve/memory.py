@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import psutil
 
+from fpsolve._checks import check_tolerance
 from fpsolve.errors import MemoryLimitError
 
-__all__ = ["check_memory", "required_memory"]
+__all__ = ["allowed_memory", "check_memory", "required_memory"]
 
 # Diagnostics, tables in one dimension less, and the interpreter's own buffers.
 OVERHEAD = 64 * 2**20
@@ -43,6 +44,13 @@ def check_memory(required: int, limit: int | None = None, *remedy: str) -> None:
     *remedy : str
         What takes less memory, when it is not a coarser grid.
     """
-    available = psutil.virtual_memory().available if limit is None else limit
+    available = allowed_memory(limit)
     if not required <= available:
         raise MemoryLimitError(required, int(available), *remedy)
+
+
+def allowed_memory(limit: float | None = None) -> float:
+    """Bytes that may be used: the limit, or what the machine has available now."""
+    if limit is None:
+        return float(psutil.virtual_memory().available)
+    return check_tolerance("memory_limit", limit, "; it is a number of bytes")

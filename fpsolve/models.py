@@ -10,11 +10,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from fpsolve._checks import check_non_negative, construct
+from fpsolve._checks import check_kind, check_non_negative, construct, shown
 from fpsolve.curves import Curve, FixedBelt, curve_from_dict
 from fpsolve.potentials import Potential, potential_from_dict
 
-__all__ = ["LayDownModel"]
+__all__ = ["LayDownModel", "check_model"]
+
+# The fourth power still has digits to spare; above A = 1e3 only the limit of large
+# noise tells anything.
+_LARGEST_NOISE = 1e60
 
 
 @dataclass(frozen=True)
@@ -57,15 +61,21 @@ class LayDownModel:
     def __post_init__(self) -> None:
         if not isinstance(self.potential, Potential):
             raise TypeError(
-                f"`potential` must be a Potential, got {self.potential!r}; wrap "
+                f"`potential` must be a Potential, got {shown(self.potential)}; wrap "
                 "functions in CallablePotential."
             )
         if not isinstance(self.curve, Curve):
             raise TypeError(
-                f"`curve` must be a Curve, got {self.curve!r}; use MovingBelt(speed) "
-                "for a moving belt."
+                f"`curve` must be a Curve, got {shown(self.curve)}; use "
+                "MovingBelt(speed) for a moving belt."
             )
-        object.__setattr__(self, "noise", check_non_negative("noise", self.noise))
+        noise = check_non_negative("noise", self.noise)
+        if not noise <= _LARGEST_NOISE:
+            raise ValueError(
+                f"`noise` must be at most {_LARGEST_NOISE:g}, got {noise:g}; its "
+                "square is the diffusivity of the angle."
+            )
+        object.__setattr__(self, "noise", noise)
 
     @property
     def diffusivity(self) -> float:
@@ -167,16 +177,20 @@ class LayDownModel:
         )
         return f"LayDownModel({parameters})\n  {self.equation}"
 
-    def _repr_latex_(self) -> str:
-        equation = (
+    @property
+    def latex(self) -> str:
+        """The Fokker-Planck equation as LaTeX, without dollar signs and without B."""
+        return (
             rf"\partial_s p + {self._transport_latex()}"
             r" - \partial_\alpha(\nabla B\cdot\tau^\perp p)"
             rf" = {self._diffusion_latex()}"
         )
+
+    def _repr_latex_(self) -> str:
         unknowns = rf",\qquad B(\xi) = {self.potential.latex}"
         if not self.curve.autonomous:
             unknowns += rf",\quad \gamma(s) = {self.curve.latex}"
-        return f"${equation}{unknowns}$"
+        return f"${self.latex}{unknowns}$"
 
     def _transport(self) -> str:
         if self.curve.fixed:
@@ -199,6 +213,13 @@ class LayDownModel:
         if not self.noise:
             return "0"
         return rf"{self.diffusivity:g}\,\partial_{{\alpha\alpha}} p"
+
+
+def check_model(model: Any) -> None:
+    """Raise TypeError unless `model` is a lay-down model."""
+    check_kind(
+        "model", model, LayDownModel, "make one by LayDownModel(potential, noise)"
+    )
 
 
 def _signed(number: float) -> str:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve._checks import check_integer
+from fpsolve._checks import check_integer, has_length, shown
 from fpsolve.cells import CellGrid, checked_half_width
 from fpsolve.grids import PhaseSpaceGrid
 
@@ -94,10 +94,10 @@ def plane_of(grid: PlaneGrid | PhaseSpaceGrid) -> PlaneGrid:
 
 
 def _checked_plane_shape(shape: Any) -> tuple[int, int]:
-    if np.ndim(shape) != 1 or len(shape) != 2:
+    if not has_length(shape, 2):
         raise ValueError(
-            f"`shape` must be two integers (n_xi1, n_xi2), got {shape!r}; take the "
-            "plane of a phase-space grid with PlaneGrid.of(grid)."
+            f"`shape` must be two integers (n_xi1, n_xi2), got {shown(shape)}; take "
+            "the plane of a phase-space grid with PlaneGrid.of(grid)."
         )
     n_xi1, n_xi2 = (
         check_integer(f"shape[{axis}] ({name})", n, _FEWEST_CELLS)

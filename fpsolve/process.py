@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from fpsolve._arrays import check_numbers
 from fpsolve._checks import check_non_negative, check_positive
 from fpsolve.curves import Curve, FixedBelt, MovingBelt
 from fpsolve.curves.curve import check_speed
@@ -25,6 +26,15 @@ _INDUSTRIAL_RANGES = (
     ("noise", 1.0, 50.0, " m^-1/2", "the dimensionless noise given instead"),
     ("speed_ratio", 0.01, 0.25, "", "per cent, or the inverse ratio, given instead"),
 )
+# Ten times beyond them is no process but a slip of units.
+_POSSIBLE_RANGES = {
+    "sigma1": (1e-4, 0.5),
+    "sigma2": (1e-4, 0.5),
+    "noise": (0.0, 500.0),
+    "speed_ratio": (-1.0, 1.0),
+}
+# Faster than air, which pulls the fibre, can be.
+_FASTEST_SPINNING = 1000.0
 
 
 @dataclass(frozen=True)
@@ -51,7 +61,9 @@ class Process:
     ------
     ValueError
         If a throwing range or the spinning speed is not positive, the noise negative,
-        or the speed ratio not between -1 and 1.
+        or the speed ratio not between -1 and 1. Also where a number can only be a slip
+        of units: throwing ranges outside 0.1 mm to 0.5 m, a noise above 500 m^-1/2, a
+        spinning speed of 1000 m/s or more.
 
     Warns
     -----
@@ -75,6 +87,7 @@ class Process:
         object.__setattr__(self, "noise", check_non_negative("noise", self.noise))
         speed_ratio = check_speed(self.speed_ratio, "speed_ratio")
         object.__setattr__(self, "speed_ratio", speed_ratio)
+        self._check_units()
         self._warn_outside_industrial_ranges()
 
     @property
@@ -124,6 +137,21 @@ class Process:
         """
         return _times(p, self.length**-2)
 
+    def _check_units(self) -> None:
+        for name, lowest, highest, unit, slip in _INDUSTRIAL_RANGES:
+            number, possible = getattr(self, name), _POSSIBLE_RANGES[name]
+            if not possible[0] <= number <= possible[1]:
+                raise ValueError(
+                    f"`{name}` must lie between {possible[0]:g} and {possible[1]:g}"
+                    f"{unit}, got {number:g}; the industrial range is {lowest:g} to "
+                    f"{highest:g}{unit}: {slip}?"
+                )
+        if not self.spinning_speed < _FASTEST_SPINNING:
+            raise ValueError(
+                f"`spinning_speed` must be below {_FASTEST_SPINNING:g} m/s, got "
+                f"{self.spinning_speed:g}; metres per minute given instead?"
+            )
+
     def _warn_outside_industrial_ranges(self) -> None:
         for name, lowest, highest, unit, slip in _INDUSTRIAL_RANGES:
             number = getattr(self, name)
@@ -140,4 +168,4 @@ class Process:
 
 
 def _times(numbers: ArrayLike, factor: float) -> NDArray[np.float64]:
-    return np.asarray(numbers, dtype=np.float64) * factor
+    return check_numbers("x", numbers) * factor

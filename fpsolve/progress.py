@@ -6,6 +6,8 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
+from fpsolve._checks import shown
+
 __all__ = ["ProgressCallback", "reporting"]
 
 # Called with steps done, steps in all, and the arclength reached.
@@ -21,10 +23,15 @@ def reporting(progress: bool | ProgressCallback) -> Iterator[ProgressCallback]:
     """A callback for a run: the caller's own, a bar in the terminal, or nothing."""
     if callable(progress):
         yield progress
-    elif progress:
+    elif progress is True:
         yield from _bar()
-    else:
+    elif progress is None or isinstance(progress, bool):
         yield _silent
+    else:
+        raise TypeError(
+            "`progress` must be True, False or a function of (steps done, steps in "
+            f"all, s), got {shown(progress)}."
+        )
 
 
 def _bar() -> Iterator[ProgressCallback]:

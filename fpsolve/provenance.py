@@ -1,4 +1,4 @@
-"""What made a result: versions, date, times; and word of compilation."""
+"""What made a result: versions, environment, date, times; word of compilation."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from importlib.metadata import PackageNotFoundError, version
 from typing import Any
 
 from fpsolve._compilation import announce
+from fpsolve.environment import environment
 
 __all__ = ["Stopwatch", "announced_compilation", "versions"]
 
@@ -39,18 +40,29 @@ def versions() -> dict[str, str]:
 
 
 class Stopwatch:
-    """Wall and CPU time since it was made."""
+    """Wall and CPU time since it was made, and before."""
 
     def __init__(self) -> None:
         self.wall, self.cpu = time.perf_counter(), time.process_time()
 
+    def add(self, wall: float, cpu: float) -> None:
+        """Count seconds that were spent before."""
+        self.wall -= wall
+        self.cpu -= cpu
+
+    def seconds(self) -> tuple[float, float]:
+        """Wall and CPU time."""
+        return time.perf_counter() - self.wall, time.process_time() - self.cpu
+
     def provenance(self, n_steps: int) -> dict[str, Any]:
-        """Versions, date, seconds and number of steps, ready for a file."""
+        """Versions, environment, date, seconds, number of steps, ready for a file."""
+        wall, cpu = self.seconds()
         return {
             "versions": versions(),
+            "environment": environment(),
             "date": datetime.now(UTC).isoformat(timespec="seconds"),
-            "wall_seconds": time.perf_counter() - self.wall,
-            "cpu_seconds": time.process_time() - self.cpu,
+            "wall_seconds": wall,
+            "cpu_seconds": cpu,
             "n_steps": n_steps,
         }
 

@@ -45,11 +45,21 @@ class Recorder:
             equilibrium = model.equilibrium(*grid.plane())
             reference = np.broadcast_to(equilibrium, grid.shape[:2])
         self.reference = reference
+        self.ratio = 1.0
+        self.inverse: Array | None = None
+        if reference is not None and np.ndim(reference) == 2:
+            # Near equilibrium p is r normalised on this grid: logarithms are small.
+            field = diagnostics.as_field(reference, grid)
+            total = diagnostics.reference_sum(field, grid) * grid.cell_volume
+            self.ratio = 1.0 / total if total > 0.0 else np.nan
+            self.inverse = diagnostics.inverse_of(reference, self.ratio)
+        # The first record stays when a caller takes `rows` elsewhere.
+        self.first: dict[str, float] = {}
         self.rows: list[dict[str, float]] = []
 
     def record(self, p: Array, s: float, **extra: float) -> dict[str, float]:
         """Add one record and return it."""
-        sums = diagnostics.functionals(p, self.grid)
+        sums = diagnostics.functionals(p, self.grid, self.inverse)
         values = {
             "s": s,
             "mass": float(sums[:, :, 0].sum()) * self.grid.cell_volume,
@@ -60,6 +70,7 @@ class Recorder:
             **extra,
             **diagnostics.moments_of_rows(sums, self.grid),
         }
+        self.first = self.first or values
         self.rows.append(values)
         return values
 
@@ -67,21 +78,26 @@ class Recorder:
         if self.reference is None or not np.isfinite(sums[:, :, 0].sum()):
             return {"relative_entropy": np.nan, "entropy_dissipation": np.nan}
         noise = self.model.noise
-        if np.ndim(self.reference) == 3:
+        if self.inverse is None:
             lost = diagnostics.entropy_dissipation(p, self.grid, noise, self.reference)
+            entropy = diagnostics.relative_entropy(p, self.grid, self.reference)
         else:
             lost = diagnostics.dissipation_of_rows(sums, self.grid, noise)
-        entropy = diagnostics.relative_entropy(p, self.grid, self.reference)
+            entropy = diagnostics.entropy_of_rows(sums, self.grid, self.ratio)
         return {"relative_entropy": entropy, "entropy_dissipation": lost}
 
     def floor(self) -> float:
         """Entropy of the reference's restriction to the grid, at the initial mass."""
         if self.reference is None:
             return float("nan")
-        start = self.rows[0]["mass"] if self.rows else 1.0
+        start = self.first.get("mass", 1.0)
         return diagnostics.entropy_floor(self.grid, self.reference, start)
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """Names of what is recorded."""
+        return tuple(self.first) or BASIC
 
     def series(self) -> dict[str, Any]:
         """The records as arrays, one entry per recorded step."""
-        keys = self.rows[0].keys() if self.rows else BASIC
-        return {key: np.array([row[key] for row in self.rows]) for key in keys}
+        return {key: np.array([row[key] for row in self.rows]) for key in self.columns}

@@ -47,6 +47,8 @@ class Solution:
     series : dict of ndarray
     saved_s : ndarray, shape (n_saved,)
     densities : ndarray, shape (n_saved, n1, n2, n_alpha)
+        After a run with checkpoints `LazyDensities`, which are read from the disk one
+        by one; `numpy.asarray` makes an array of them.
     entropy_floor : float
         Value H tends to on this grid; see `diagnostics.entropy_floor`.
     status : str
@@ -56,7 +58,11 @@ class Solution:
     errors : dict of ndarray, or None
         Richardson estimates: "density_l1" (n_saved,) and one array per series.
     provenance : dict
-        Versions, date, times, number of steps.
+        Versions, date, times, number of steps; `run` holds the arguments of `solve`.
+    initial_density : ndarray, shape (n1, n2, n_alpha), or None
+        p0, from which the run began; None for a file that does not hold it.
+    reference : ndarray or None
+        What the entropy is relative to, if it was given.
     """
 
     model: LayDownModel | None
@@ -71,6 +77,8 @@ class Solution:
     message: str = ""
     errors: Mapping[str, Array] | None = None
     provenance: dict[str, Any] = field(default_factory=dict)
+    initial_density: Array | None = None
+    reference: Array | None = None
 
     def __getattr__(self, name: str) -> Array:
         # Only called for names that are not fields; guards against half-built

@@ -1,33 +1,37 @@
-"""Evolve a density: the loop, its checks and its records."""
+"""Evolve a density: its arguments, checked, and the one or two passes of a run."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterable
-from dataclasses import dataclass, replace
-from typing import Any, Protocol
+import os
+from collections.abc import Callable, Iterable, Mapping
+from contextlib import AbstractContextManager, nullcontext
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve.errors import (
-    DomainTooSmallError,
-    MassDriftError,
-    NegativeDensityError,
-    NonFiniteDensityError,
-    RunError,
-    RunInterrupted,
-)
+from fpsolve._blas import one_blas_thread
+from fpsolve._checks import check_flag, check_tolerance, shown
+from fpsolve._threads import threads_worth_their_wait
+from fpsolve.diagnostics import checked_reference
 from fpsolve.extrapolation import extrapolated
 from fpsolve.grids import PhaseSpaceGrid
+from fpsolve.keeping import MemoryKeepers
 from fpsolve.memory import check_memory, required_memory
 from fpsolve.models import LayDownModel
 from fpsolve.progress import ProgressCallback, reporting
-from fpsolve.provenance import Stopwatch, announced_compilation
-from fpsolve.recording import Recorder
-from fpsolve.schedule import Schedule, make_schedule
+from fpsolve.provenance import announced_compilation
+from fpsolve.run import Run
+from fpsolve.run_description import RunDescription, run_arguments
+from fpsolve.schedule import Schedule, checked_stops, make_schedule
 from fpsolve.schemes.form import State
 from fpsolve.solution import Solution
+
+if TYPE_CHECKING:
+    from fpsolve.checkpoints import Checkpoint
+    from fpsolve.checkpoints.folder import CheckpointFolder
 
 __all__ = ["Scheme", "solve"]
 
@@ -52,6 +56,7 @@ class Scheme(Protocol):
     def advance(self, state: State, s: float, ds: float, n_steps: int = 1) -> None: ...  # noqa: D102
 
 
+@one_blas_thread()
 def solve(
     scheme: Scheme,
     p0: Array,
@@ -67,6 +72,7 @@ def solve(
     reference: Array | None = None,
     record_every: int = 1,
     memory_limit: int | None = None,
+    checkpoint: Checkpoint | str | os.PathLike[str] | None = None,
 ) -> Solution:
     """Density p(ξ, α, s) of equation (7) from p0, with its entropy at every step.
 
@@ -104,6 +110,12 @@ def solve(
         steps merge.
     memory_limit : int, optional
         Bytes the run may use; by default what is available.
+    checkpoint : Checkpoint or path, optional
+        Folder in which the run keeps what it needs to go on after a kill, by default
+        every minute. If it holds a checkpoint of the same run, that one goes on: the
+        result is bitwise that of an uninterrupted run. Records and saved densities
+        are then on the disk, and `densities` of the result are read from the folder
+        when they are asked for: keep it as long as you use them. See `resume`.
 
     Returns
     -------
@@ -116,25 +128,80 @@ def solve(
     NonFiniteDensityError, MassDriftError, NegativeDensityError, DomainTooSmallError
         During the run, each with its numbers and the partial solution; so is
         `MassCorrectionError` of the semi-Lagrangian scheme.
+    CheckpointMismatchError
+        If the folder holds the checkpoint of another run; names every difference.
+    CheckpointError
+        If a checkpoint cannot be written. The last good one is kept.
+
+    References
+    ----------
+    [KMW09]_, equations (7) and (11); extrapolation as in [Ric11]_.
     """
-    p0 = checked_start(scheme, p0)
+    p0 = checked_start(checked_scheme(scheme), p0)
+    extrapolate = check_flag("extrapolate", extrapolate)
+    if reference is not None:
+        reference = checked_reference(reference, scheme.grid)
     tolerances = Tolerances(mass_tolerance, boundary_tolerance, negative_tolerance)
+    save_at = None if save_at is None else tuple(checked_stops(save_at))
     schedule = make_schedule(s_span, ds, save_at, record_every)
+    # Two for writing, where saved densities do not stay. The first of two passes
+    # leaves its initial density.
+    n_kept = len(schedule.saves) if checkpoint is None else 2
     required = required_memory(
-        scheme.grid.nbytes, scheme.n_arrays, len(schedule.saves), extrapolate
+        scheme.grid.nbytes, scheme.n_arrays + float(extrapolate), n_kept, extrapolate
     )
     check_memory(required, memory_limit)
-    with reporting(progress) as report, announced_compilation(bool(progress)):
-        n_total = schedule.n_steps * (3 if extrapolate else 1)
-        coarse = Run(scheme, p0, schedule, reference, tolerances)
-        solution = coarse.complete(report, 0, n_total)
-        if extrapolate:
-            fine = Run(scheme, p0, schedule.refined(), reference, tolerances)
-            refined = fine.complete(
-                report, schedule.n_steps, n_total, fallback=solution
-            )
-            solution = extrapolated(solution, refined, scheme.order)
-    return solution
+    arguments = run_arguments(
+        s_span, ds, save_at, record_every=record_every, extrapolate=extrapolate,
+        mass_tolerance=mass_tolerance, boundary_tolerance=boundary_tolerance,
+        negative_tolerance=negative_tolerance,
+    )  # fmt: skip
+    with (
+        _keepers(checkpoint, scheme, p0, reference, arguments) as keepers,
+        reporting(progress) as report,
+        announced_compilation(bool(progress)),
+        threads_worth_their_wait(p0.size),
+    ):
+        begin = partial(Run, scheme, p0, reference, tolerances, arguments)
+        return _completed(begin, keepers, schedule, extrapolate, report)
+
+
+def _completed(
+    begin: Callable[..., Run],
+    keepers: MemoryKeepers | CheckpointFolder,
+    schedule: Schedule,
+    extrapolate: bool,
+    report: ProgressCallback,
+) -> Solution:
+    """The one pass of a run, or both combined."""
+    passes = [schedule, schedule.refined()] if extrapolate else [schedule]
+    n_total, n_before = sum(one.n_steps for one in passes), 0
+    found: list[Solution] = []
+    for number, one in enumerate(passes, start=1):
+        run = begin(one, keepers.keeper(f"pass-{number}", one))
+        found.append(run.complete(report, n_before, n_total, *found))
+        n_before += one.n_steps
+    if not extrapolate:
+        return found[0]
+    coarse, fine = found
+    return extrapolated(coarse, fine, run.scheme.order)
+
+
+def _keepers(
+    checkpoint: Checkpoint | str | os.PathLike[str] | None,
+    scheme: Scheme,
+    p0: Array,
+    reference: Array | None,
+    arguments: Mapping[str, Any],
+) -> AbstractContextManager[MemoryKeepers | CheckpointFolder]:
+    """What hands out the keepers of the passes."""
+    if checkpoint is None:
+        return nullcontext(MemoryKeepers(scheme.grid.shape))
+    from fpsolve.checkpoints.checkpoint import as_checkpoint
+    from fpsolve.checkpoints.folder import opened_folder
+
+    run = RunDescription.of(scheme, p0, reference, arguments)
+    return opened_folder(as_checkpoint(checkpoint), run, p0, reference)
 
 
 @dataclass(frozen=True)
@@ -147,8 +214,19 @@ class Tolerances:
 
     def __post_init__(self) -> None:
         for name, value in vars(self).items():
-            if not value > 0:
-                raise ValueError(f"`{name}_tolerance` must be positive, got {value:g}.")
+            check_tolerance(f"{name}_tolerance", value)
+
+
+def checked_scheme(scheme: Any, name: str = "scheme") -> Scheme:
+    """The scheme; TypeError unless it has what `solve` needs."""
+    needed = ("model", "grid", "start", "density", "advance")
+    if isinstance(scheme, type) or not all(hasattr(scheme, name) for name in needed):
+        raise TypeError(
+            f"`{name}` must be a scheme, got {shown(scheme)}; make one by "
+            "drift_kick(model, grid)."
+        )
+    made: Scheme = scheme
+    return made
 
 
 def checked_start(scheme: Scheme, p0: Array) -> Array:
@@ -160,117 +238,3 @@ def checked_start(scheme: Scheme, p0: Array) -> Array:
     if not p0.sum() > 0:
         raise ValueError(f"`p0` must have positive mass, got {p0.sum():g}.")
     return p0
-
-
-class Run:
-    """One pass over a schedule."""
-
-    def __init__(
-        self,
-        scheme: Scheme,
-        p0: Array,
-        schedule: Schedule,
-        reference: Array | None,
-        tolerances: Tolerances,
-    ) -> None:
-        self.scheme, self.schedule = scheme, schedule
-        self.recorder = Recorder(scheme.model, scheme.grid, reference)
-        self.tolerances = tolerances
-        self.state = scheme.start(p0)
-        self.saved: list[tuple[float, Array]] = []
-        self.watch = Stopwatch()
-
-    def complete(
-        self,
-        report: ProgressCallback,
-        n_before: int,
-        n_total: int,
-        fallback: Solution | None = None,
-    ) -> Solution:
-        """Run to the end; what stops it leaves with the partial solution.
-
-        With extrapolation the finished run at ds is the `fallback`: it is what is
-        left when the one at ds/2 stops.
-        """
-        try:
-            self._record(0)
-            report(n_before, n_total, self.schedule.start)
-            for first, last in self.schedule.legs():
-                s = self.schedule.s(first)
-                self.scheme.advance(self.state, s, self.schedule.ds, last - first)
-                self._record(last)
-                report(n_before + last, n_total, self.schedule.s(last))
-        except RunError as error:
-            error.solution = self._partial("failed", str(error), fallback)
-            raise
-        except KeyboardInterrupt:
-            partial = self._partial("interrupted", "stopped by the user", fallback)
-            raise RunInterrupted(partial) from None
-        return self._solution("finished", "")
-
-    def _record(self, step: int) -> None:
-        s = self.schedule.s(step)
-        p = self.scheme.density(self.state)
-        extra = {"mass_correction": self.state.correction}
-        if self.state.theta is not None:
-            extra["theta"] = self.state.theta
-        self._check_finite(p, s)
-        values = self.recorder.record(p, s, **extra)
-        if step in self.schedule.saves:
-            self.saved.append((s, p.copy()))
-        self._check(values)
-
-    def _check_finite(self, p: Array, s: float) -> None:
-        # A sum is finite unless a cell is not, or the values are about to overflow.
-        if not math.isfinite(float(p.sum())):
-            bad = np.argwhere(~np.isfinite(p))
-            index = bad[0] if len(bad) else np.unravel_index(np.argmax(p), p.shape)
-            raise NonFiniteDensityError(s, tuple(int(i) for i in index))
-
-    def _check(self, values: dict[str, float]) -> None:
-        s = values["s"]
-        drift = values["mass"] / self.recorder.rows[0]["mass"] - 1.0
-        allowed = self.tolerances
-        if not abs(drift) <= allowed.mass:
-            raise MassDriftError(s, drift, allowed.mass)
-        if not abs(self.state.correction) <= self.scheme.correction_limit:
-            raise MassDriftError(s, self.state.correction, self.scheme.correction_limit)
-        negative = values["negative_mass"] / values["mass"]
-        if not negative <= allowed.negative:
-            raise NegativeDensityError(s, negative, allowed.negative)
-        if not values["boundary_mass"] <= allowed.boundary:
-            raise DomainTooSmallError(
-                values["boundary_mass"],
-                self.scheme.grid.half_width,
-                s,
-                allowed.boundary,
-            )
-
-    def _partial(
-        self, status: str, message: str, fallback: Solution | None
-    ) -> Solution:
-        if fallback is None:
-            return self._solution(status, message)
-        message += " (in the run at ds/2: this is the one at ds, not extrapolated)"
-        return replace(fallback, status=status, message=message)
-
-    def _solution(self, status: str, message: str) -> Solution:
-        shape = self.scheme.grid.shape
-        description = {
-            "name": self.scheme.name,
-            "order": self.scheme.order,
-            "options": dict(self.scheme.options),
-        }
-        return Solution(
-            model=self.scheme.model,
-            grid=self.scheme.grid,
-            scheme=description,
-            ds=self.schedule.ds,
-            series=self.recorder.series(),
-            saved_s=np.array([s for s, _ in self.saved]),
-            densities=np.array([p for _, p in self.saved]).reshape(-1, *shape),
-            entropy_floor=self.recorder.floor(),
-            status=status,
-            message=message,
-            provenance=self.watch.provenance(self.state.n_steps),
-        )

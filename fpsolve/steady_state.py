@@ -7,17 +7,18 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse.linalg import LinearOperator, gmres
 from scipy.special import i0e, i1e
 
 from fpsolve import diagnostics, initial
+from fpsolve._blas import one_blas_thread
+from fpsolve._checks import check_flag, check_real, check_tolerance
 from fpsolve.errors import DomainTooSmallError, SteadyStateError
 from fpsolve.grids import PhaseSpaceGrid
 from fpsolve.models import LayDownModel
 from fpsolve.potentials import LinearPotential
 from fpsolve.schemes import drift_kick
 from fpsolve.schemes.form import State
-from fpsolve.solve import Scheme
+from fpsolve.solve import Scheme, checked_scheme
 from fpsolve.suggestions import suggest_step
 
 __all__ = ["SteadyState", "steady_state"]
@@ -29,6 +30,8 @@ Array = NDArray[np.float64]
 STRIDE = 1.0
 RESTART = 20
 OUTER = 12
+# A stride of more steps than this would never end.
+SHORTEST = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,6 +71,7 @@ class SteadyState:
         return diagnostics.moments(self.density, self.grid)
 
 
+@one_blas_thread()
 def steady_state(
     model: LayDownModel | Scheme,
     grid: PhaseSpaceGrid | None = None,
@@ -118,11 +122,10 @@ def steady_state(
     """
     scheme = scheme_for(model, grid)
     check_stationary(scheme.model)
-    if not tolerance > 0:
-        raise ValueError(f"`tolerance` must be positive, got {tolerance:g}.")
-    ds = float(suggest_step(scheme.model, scheme.grid)) if ds is None else float(ds)
-    if not (math.isfinite(ds) and ds > 0):
-        raise ValueError(f"`ds` must be positive, got {ds:g}.")
+    tolerance = check_tolerance("tolerance", tolerance)
+    boundary_tolerance = check_tolerance("boundary_tolerance", boundary_tolerance)
+    extrapolate = check_flag("extrapolate", extrapolate)
+    ds = checked_step(suggest_step(scheme.model, scheme.grid) if ds is None else ds)
     result = fixed_point(scheme, ds, tolerance)
     if extrapolate and not scheme.model.curve.fixed:
         finer = fixed_point(scheme, ds / 2, tolerance, start=result.density)
@@ -131,12 +134,26 @@ def steady_state(
     return result
 
 
+def checked_step(ds: float) -> float:
+    """The step as a float, positive and not so short that no unit of s is reached."""
+    ds = check_real("ds", ds)
+    if not (math.isfinite(ds) and ds > 0):
+        raise ValueError(f"`ds` must be positive, got {ds:g}.")
+    if not ds >= SHORTEST:
+        raise ValueError(
+            f"`ds` must be at least {SHORTEST:g}, got {ds:g}; one evaluation goes over "
+            "about a unit of arclength."
+        )
+    return ds
+
+
 def scheme_for(model: LayDownModel | Scheme, grid: PhaseSpaceGrid | None) -> Scheme:
     """The scheme to iterate, checked."""
     if isinstance(model, LayDownModel):
         if grid is None:
             raise TypeError("`grid` is needed with a model; pass a PhaseSpaceGrid.")
         return drift_kick(model, grid, balanced=model.potential.normalisable)
+    checked_scheme(model, "model")
     if grid is not None and grid != model.grid:
         raise ValueError(f"`grid` must be the scheme's own {model.grid}, got {grid}.")
     for option in ("positive", "limited"):
@@ -230,6 +247,8 @@ class Evolution:
         derivative at p is taken by a difference, which is exact up to that
         correction, and the outer iteration removes the rest.
         """
+        from scipy.sparse.linalg import LinearOperator, gmres
+
         defect = (image - p).ravel()
 
         def lost(direction: Array) -> Array:

@@ -6,10 +6,10 @@ import math
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq
 
-from fpsolve.grids import PhaseSpaceGrid
-from fpsolve.models import LayDownModel
+from fpsolve._checks import check_real
+from fpsolve.grids import PhaseSpaceGrid, check_grid
+from fpsolve.models import LayDownModel, check_model
 from fpsolve.potentials import Potential
 
 __all__ = ["SuggestedGrid", "SuggestedStep", "suggest_grid", "suggest_step"]
@@ -104,6 +104,8 @@ def suggest_step(
     SuggestedStep
         A float; `.reason` says why.
     """
+    check_model(model)
+    check_grid(grid)
     check_tolerance(tolerance)
     mean_force = mean_square_force(model, grid)
     law = splitting_coefficient(model, mean_force)
@@ -147,6 +149,7 @@ def suggest_grid(model: LayDownModel, tolerance: float = 1e-2) -> SuggestedGrid:
     ValueError
         If the tolerance is not in (0, 1) or the potential does not confine.
     """
+    check_model(model)
     check_tolerance(tolerance)
     if not model.potential.normalisable:
         raise ValueError(
@@ -181,6 +184,7 @@ def suggest_grid(model: LayDownModel, tolerance: float = 1e-2) -> SuggestedGrid:
 
 def check_tolerance(tolerance: float) -> None:
     """Raise unless 0 < tolerance < 1."""
+    tolerance = check_real("tolerance", tolerance)
     if not 0 < tolerance < 1:
         raise ValueError(
             f"`tolerance` must lie between 0 and 1, got {tolerance:g}; it is an L1 "
@@ -248,6 +252,7 @@ def box_half_widths(potential: Potential, lost: float) -> tuple[float, float]:
 
 def belt_shift(model: LayDownModel) -> float:
     """Where the belt moves the mean of ξ1: |∂₁B| = A²k/2 with I₁(k)/I₀(k) = v."""
+    from scipy.optimize import brentq
     from scipy.special import i0e, i1e
 
     speed = abs(model.belt_speed)

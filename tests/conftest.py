@@ -11,6 +11,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 import numba
 import numpy as np
 import pytest
+from hypothesis import HealthCheck, settings
 
 from fpsolve.grids import PhaseSpaceGrid
 from fpsolve.models import LayDownModel
@@ -19,6 +20,14 @@ from fpsolve.potentials import QuadraticPotential
 # The grids are small: where a test does not ask for two threads, waiting for the
 # second one would cost more than it does.
 numba.set_num_threads(1)
+
+
+# The same examples every time, so that a failure is that of a change. "thorough" looks
+# at ten times as many, others each time: HYPOTHESIS_PROFILE=thorough pytest ...
+COMMON = {"deadline": None, "suppress_health_check": [HealthCheck.too_slow]}
+settings.register_profile("ci", derandomize=True, **COMMON)
+settings.register_profile("thorough", max_examples=1000, **COMMON)
+settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "ci"))
 
 
 @pytest.fixture(autouse=True)
@@ -47,8 +56,15 @@ def model():
 
 
 @pytest.fixture
-def on_threads():
-    """`on_threads(n, f)` calls f with numba limited to n threads."""
+def unsynced(monkeypatch):
+    """Files are not put on the disk at once, which takes long on a busy one."""
+    monkeypatch.setattr("os.fsync", lambda handle: None)
+
+
+@pytest.fixture
+def on_threads(monkeypatch):
+    """`on_threads(n, f)` calls f on n threads of numba, however little it computes."""
+    monkeypatch.setattr("fpsolve._threads.CELLS_PER_THREAD", 1)
     before = numba.get_num_threads()
 
     def call(n, f):

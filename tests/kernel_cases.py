@@ -32,10 +32,15 @@ class Arguments:
     def out(self):
         return np.zeros(self.shape)
 
-    def rows(self, n_rows=5):
-        half = self.n // 2
-        random = self.rng.uniform(-1.0, 1.0, (4, n_rows, half))
-        return *random, self.rng.permutation(self.n1 * self.n2)[:n_rows]
+    def normal(self, *shape):
+        return self.rng.normal(size=shape)
+
+    def quads(self):
+        """Two quads of rows and one array of every shape they are treated in."""
+        half, quarter = self.n // 2, -(-self.n // 4)
+        rows = self.rng.permutation(self.n1 * self.n2)[:8]
+        values, folded = self.normal(self.n, 8), self.normal(2, 2, quarter, 8)
+        return rows, values, folded, self.normal(2, half, 8), self.normal(half, 16)
 
     def turning(self):
         return RotationDiffusion(self.model, self.grid, positive=True)
@@ -51,13 +56,20 @@ class Arguments:
             line[3], 0.3, line[4], line[5], points, limited, True, self.out(),
         )  # fmt: skip
 
+    def sums_kernel(self, logarithms):
+        inverse = self.rng.uniform(0.5, 2.0, (self.n1, self.n2))
+        inverse = inverse if logarithms else np.ones((1, 1))
+        out = np.zeros((self.n1, self.n2, functionals.N_FUNCTIONALS))
+        alpha = self.grid.alpha
+        return self.p - 0.3, np.cos(alpha), np.sin(alpha), inverse, out
+
     def rotate_kernel(self, positive, n_nodes=1):
         turn = self.turning()
         table = turn.table(0.1)
-        weights = self.rng.uniform(size=(table.rows.size, n_nodes))
+        weights = self.rng.uniform(size=(table.matrix_of.size, n_nodes, 4))
         return (
             self.p.reshape(-1, self.n), table.rows, table.matrix_of, weights,
-            np.repeat(table.matrices, n_nodes, axis=0), turn.phases, table.damping,
+            np.repeat(table.matrices, n_nodes, axis=0), turn.direction, table.damping,
             turn.reaction(0.0, 0.1), *turn.transforms, positive,
             self.out().reshape(-1, self.n),
         )  # fmt: skip
@@ -65,14 +77,15 @@ class Arguments:
     def cases(self):
         """Name of a kernel: list of argument tuples."""
         p, row, n = self.p, self.p[1], self.n
-        first, weights = self.taps[0]
-        even, odd, cosine, sine, rows = self.rows()
-        phases = self.turning().phases
-        modes = self.rng.normal(size=(5, 2, n // 2))
-        matrices = self.rng.normal(size=(3, n // 2, n // 2))
-        which = np.array([0, 0, 1, 2, 2])
+        rows, values, folded, phases, modes = self.quads()
+        direction, transforms = self.turning().direction, self.turning().transforms
+        matrices, which = self.normal(3, n // 2, n // 2), np.array([2, 0])
         table = np.stack([matrices, matrices[::-1]])
-        number, sawtooth = self.rng.uniform(size=(5, 2)), self.rng.normal(size=5)
+        one, two = np.ones((2, 1, 4)), self.normal(2, 2, 4)
+        wide, sawtooth = np.zeros_like(modes), self.normal(8)
+        starts = np.array([3, 0, 2, 5, 1, 4, 6, 2]) * n
+        line, ones = self.normal(4, n), np.ones(n)
+        lead, padded = 3, self.normal(self.n2 + 7, n)
         scale = self.rng.uniform(size=self.n1 * self.n2)
         flat, plane = p.reshape(-1, n), np.zeros((self.n2, n))
         four, six = np.array([5, 6, 7, 0]), np.array([5, 6, 7, 0, 1, 2])
@@ -106,20 +119,27 @@ class Arguments:
                 self.perturbed_kernel(6, True, self.growth),
             ],
             "blend": [(p, p[::-1].copy(), 0.3, self.out())],
-            "squared_differences": [(self.rng.normal(size=n + 7), n)],
-            "row_functionals": [(
-                p - 0.3, np.cos(self.grid.alpha), np.sin(self.grid.alpha),
-                np.zeros((self.n1, self.n2, functionals.N_FUNCTIONALS)),
-            )],
+            "squared_differences": [(self.normal(n + 7), ones)],
+            "information": [(np.maximum(line[0], 0.0), 1.7), (ones, 1.0 + 1e-9)],
+            "read_row": [(*line[:3], ones, line[3], self.normal(n + 8), np.zeros(7))],
+            "row_functionals": [self.sums_kernel(False), self.sums_kernel(True)],
             "row_sums": [(p, np.zeros((self.n1, self.n2)))],
             "scale_rows": [(p, scale.reshape(self.n1, self.n2), self.out())],
-            "fold": [(flat, rows, even, odd, sawtooth)],
-            "unfold": [(even, odd, sawtooth, rows, scale, np.zeros_like(flat))],
-            "turn_in": [(cosine, sine, phases, rows, np.zeros_like(modes))],
-            "turn_out": [(modes, phases, rows, cosine, sine)],
-            "multiply_groups": [(modes, which, matrices, np.zeros_like(modes))],
-            "multiply_interpolated": [
-                (modes, which, number, table, np.zeros_like(modes)),
+            "load_rows": [(flat, rows, values)],
+            "store_rows": [(values, rows, scale, np.zeros_like(flat))],
+            "fold": [(values, folded, sawtooth)],
+            "unfold": [(folded, sawtooth, values)],
+            "multiply": [
+                (self.normal(6, 7), self.normal(6, 16), 8, add, self.normal(7, 16))
+                for add in (False, True)
+            ],
+            "transform": [(transforms[0], folded, np.zeros_like(folded))],
+            "powers": [(direction, rows, phases)],
+            "turn_in": [(folded, phases, modes)],
+            "turn_out": [(modes, phases, folded)],
+            "kick_quads": [
+                (modes, which, one, table[:1], wide.copy(), wide.copy()),
+                (modes, which, two, table, wide.copy(), wide.copy()),
             ],
             "limit_row": [(row[0] - 0.4,), (row[0].copy(),), (-row[0],)],
             "rotate": [
@@ -127,15 +147,22 @@ class Arguments:
                 self.rotate_kernel(False, n_nodes=2),
             ],
             "rotation_matrices": [
-                (cosine[0], heat, False, np.zeros((n // 2, n // 2, n // 2))),
-                (cosine[0], heat, True, np.zeros((n // 2, n // 2, n // 2))),
+                (line[0, :4], heat, False, np.zeros((4, n // 2, n // 2))),
+                (line[0, :4], heat, True, np.zeros((4, n // 2, n // 2))),
             ],
             "moebius_powers": [(0.4, 6, np.zeros((6, 6))), (-1.0, 4, np.zeros((4, 4)))],
-            "filter_rows": [(row, first, weights, plane)],
-            "filter_planes": [(p, 2, first, weights, plane)],
+            "filter_rows": [(p.ravel(), starts, self.normal(8, n), plane)],
+            "filter_planes": [(
+                p.ravel(), starts, self.normal(5, n), np.zeros((4, self.n2, n)),
+            )],
+            "begins": [(1, -2, 6, 5, 10), (7, 3, 4, 7, 8)],
+            "wrap_rows": [(lead, self.n2, padded)],
             "translate": [(p, *self.taps[0], *self.taps[1], self.out())],
             "clamp_flux": [(row - 0.5, p[2] - 0.3)],
-            "transport_rows": [(row, *flux, *donor, work, plane)],
+            "plane_fluxes": [(
+                p.ravel(), 1, *flux, *donor, self.n1, plane.copy(), plane.copy(),
+            )],
+            "transport_rows": [(padded, lead, *flux, *donor, work, plane)],
             "translate_positive": [(
                 p, *self.fluxes[0][0], *self.fluxes[0][1], *self.fluxes[1][0],
                 *self.fluxes[1][1], self.out(),

@@ -15,8 +15,8 @@ from solutions import relaxing_solution
 
 import fpsolve as fp
 from fpsolve import io
-from fpsolve.cli.numbers import with_error
 from fpsolve.config import PathsConfig, load_config
+from fpsolve.report.numbers import with_error
 
 ROOT = Path(__file__).parents[1]
 CONFIG = """
@@ -224,19 +224,12 @@ def test_too_many_threads_are_refused(fpsolve, config):
     assert_mistake(fpsolve("paths", config, "--threads", 9999), "must be at most")
 
 
-def test_a_missing_zarr_is_told_before_sampling(fpsolve, config, tmp_path, monkeypatch):
-    monkeypatch.setattr("fpsolve.io.files.find_spec", lambda name: None)
-    config.write_text(CONFIG + 'format = "zarr"\n')
-    assert_mistake(fpsolve("paths", config, "--out", "out"), "fpsolve[zarr]")
-    assert files(tmp_path) == ["paths.toml"]
-
-
 def test_paths_that_do_not_fit_into_memory_never_start(fpsolve, config, tmp_path):
     result = fpsolve("paths", config, "--out", "out", "--n-paths", 10**12)
     assert result.exit_code == 1, result.output
     assert "GiB are available" in result.stderr
     assert "Traceback" not in result.output
-    assert files(tmp_path / "out") == []
+    assert not (tmp_path / "out").exists() or not files(tmp_path / "out")
 
 
 def test_an_interrupt_keeps_what_was_finished(fpsolve, config, tmp_path, monkeypatch):
@@ -259,7 +252,7 @@ def test_an_interrupt_elsewhere_leaves_nothing(fpsolve, config, tmp_path, monkey
 
     monkeypatch.setattr("fpsolve.cli.ensemble.print_paths_plan", interrupted)
     assert_mistake(fpsolve("paths", config, "--out", "out"), "interrupted", 130)
-    assert files(tmp_path / "out") == []
+    assert not (tmp_path / "out").exists() or not files(tmp_path / "out")
 
 
 def test_a_full_disk_is_an_error_without_a_traceback(
@@ -271,7 +264,7 @@ def test_a_full_disk_is_an_error_without_a_traceback(
     monkeypatch.setattr("xarray.Dataset.to_netcdf", full)
     result = fpsolve("paths", config, "--out", "out")
     assert_mistake(result, "No space left on device", code=1)
-    assert files(tmp_path / "out") == []
+    assert not (tmp_path / "out").exists() or not files(tmp_path / "out")
 
 
 def test_stored_paths_are_drawn_beside_themselves_or_elsewhere(

@@ -84,7 +84,8 @@ def test_bad_input_of_a_study_is_one_line_and_exit_code_two(call, tmp_path):
     )
     assert_mistake(call(rate, "--part", "rest"), "`parts` must be among relaxation")
     assert_mistake(
-        call(rate, "--potential", "quadratic", "--tolerance", -1), "`tolerance` must be"
+        call(rate, "--potential", "quadratic", "--tolerance", -1),
+        "`tolerance` must lie",
     )
     assert files(tmp_path) == []
 

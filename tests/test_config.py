@@ -373,9 +373,16 @@ def test_all_mistakes_are_told_at_once():
 
 
 def test_an_unlikely_value_is_a_warning_when_the_run_is_built():
-    config = read_config(PROCESS.replace("0.01\n", "10.0\n") + WITHOUT_MODEL)
+    config = read_config(PROCESS.replace("0.01\n", "0.1\n") + WITHOUT_MODEL)
     with pytest.warns(UserWarning, match="millimetres given instead of metres"):
         config.build()
+
+
+def test_a_slip_of_units_is_an_error():
+    text = PROCESS.replace("0.01\n", "10.0\n") + WITHOUT_MODEL
+    message = r"section \[process\]: `sigma1` .* got 10; .*millimetres given instead"
+    with pytest.raises(ConfigurationError, match=message):
+        read_config(text)
 
 
 def test_what_is_not_toml_is_refused_with_the_line(tmp_path):

@@ -220,17 +220,14 @@ def test_paths_outside_of_the_box_are_counted():
     histogram = sampled.histogram(GRID, 1.0)
     assert histogram.outside == 0
 
-    class Escaped:
-        def __getattr__(self, name):
-            return getattr(sampled, name)
-
+    class Escaped(fp.Paths):
         def histogram(self, grid, s):
             counts = histogram.counts.copy()
             most = np.unravel_index(np.argmax(counts), counts.shape)
             counts[most] -= 100
             return replace(histogram, counts=counts, outside=100)
 
-    check = compare(density(MODEL), Escaped())
+    check = compare(density(MODEL), Escaped(**vars(sampled)))
     assert check.test("largest cell", 1.0).p_value < check.tests[0].threshold
 
 

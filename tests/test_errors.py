@@ -57,6 +57,16 @@ EXAMPLES = [
         "`memory_limit`.",
     ),
     (
+        errors.CheckpointError("run/a.npz", "No space left", "make room"),
+        "checkpoint `run/a.npz` cannot be written: No space left; make room.",
+    ),
+    (
+        errors.CheckpointMismatchError("run", ["`ds` was 1, is 2", "`p0` differs"]),
+        "checkpoint `run` is of another run: `ds` was 1, is 2, `p0` differs; use the "
+        "arguments of that run, or name another folder, or remove this one to begin "
+        "anew.",
+    ),
+    (
         errors.SteadyStateError(residual=1e-3, tolerance=1e-8),
         "steady state not reached: residual 0.001 exceeds tolerance 1e-08; allow more "
         "iterations or enlarge `tolerance`.",

@@ -4,13 +4,12 @@ import contextlib
 import doctest
 import io
 import re
-from pathlib import Path
 
 import pytest
+from pages import FENCE, ROOT, fences, name_of, pages_with
 
 import fpsolve as fp
 
-ROOT = Path(__file__).parents[1]
 RUN_COMMAND = (
     "python3 -m venv .venv && .venv/bin/pip install -q . && "
     ".venv/bin/fpsolve run --out results"
@@ -19,25 +18,6 @@ TEST_COMMAND = (
     'python3 -m venv .venv && .venv/bin/pip install -q -e ".[test]" && '
     ".venv/bin/pytest -q"
 )
-FENCE = re.compile(r"^```(\S*)[^\n]*\n(.*?)^```$", re.MULTILINE | re.DOTALL)
-
-
-def fences(page):
-    """Fenced blocks of a page: (kind, text, line, whether it follows at once)."""
-    source, end = page.read_text("utf-8"), 0
-    found = []
-    for match in FENCE.finditer(source):
-        at_once = not source[end : match.start()].strip()
-        line = source.count("\n", 0, match.start()) + 1
-        found.append((match[1], match[2], line, at_once))
-        end = match.end()
-    return found
-
-
-def pages_with(kind):
-    """README and the pages under docs that have a block of that kind."""
-    pages = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
-    return [page for page in pages if any(f[0] == kind for f in fences(page))]
 
 
 def start_of(page):
@@ -52,10 +32,6 @@ def start_of(page):
             scheme, p0, (0.0, 5.0), 0.25, save_at=(0.0, 2.5, 5.0), extrapolate=True
         )
     return namespace
-
-
-def name_of(page):
-    return str(page.relative_to(ROOT))
 
 
 @pytest.mark.parametrize("page", pages_with("python"), ids=name_of)
@@ -113,7 +89,9 @@ def test_every_file_the_readme_links_to_exists():
     assert [link for link in links if not (ROOT / link).exists()] == []
 
 
-@pytest.mark.parametrize("section", ["potential", "curve", "scheme", "diagnostic"])
+@pytest.mark.parametrize(
+    "section", ["potential", "curve", "operator", "scheme", "diagnostic", "study"]
+)
 def test_every_extension_shown_is_shorter_than_thirty_lines(section):
     source = (ROOT / "docs/extending.md").read_text("utf-8")
     start = re.search(rf"^## .*{section}", source, re.MULTILINE).end()

@@ -19,7 +19,6 @@ from fpsolve.curves import (
     TabulatedCurve,
 )
 from fpsolve.errors import FileFormatError
-from fpsolve.io import files
 from fpsolve.models import LayDownModel
 from fpsolve.potentials import (
     CallablePotential,
@@ -266,13 +265,6 @@ def test_the_folder_of_a_file_must_exist(solution, tmp_path):
 def test_engines_are_named(solution, tmp_path):
     with pytest.raises(ValueError, match=r"`engine` must be one of 'h5netcdf', 'zarr'"):
         io.save(solution, tmp_path / "result.nc", engine="pickle")
-
-
-def test_a_missing_zarr_names_the_extra(solution, tmp_path, monkeypatch):
-    monkeypatch.setattr(files, "find_spec", lambda name: None)
-    with pytest.raises(ImportError, match=r"pip install 'fpsolve\[zarr\]'"):
-        io.save(solution, tmp_path / "result.zarr")
-    assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.parametrize("share", [0.0, 0.001, 0.1, 0.5, 0.999])

@@ -274,7 +274,7 @@ def test_an_older_file_that_does_not_say_what_it_holds_is_a_solution(tmp_path):
 def test_a_kind_from_the_future_is_refused(paths, tmp_path):
     dataset = paths.to_xarray().assign_attrs(fpsolve_kind="web")
     dataset.to_netcdf(tmp_path / "web.nc", engine="h5netcdf")
-    message = r"it holds 'web', this version of fpsolve reads 'solution' and 'paths'"
+    message = r"it holds 'web', this version of fpsolve reads 'solution', 'paths', "
     with pytest.raises(FileFormatError, match=message):
         fp.load(tmp_path / "web.nc")
 

@@ -13,6 +13,7 @@ from fpsolve.schemes import drift_kick, rotation_table, semi_lagrangian
 from fpsolve.schemes.characteristics import Characteristics
 from fpsolve.schemes.diffusion import ImplicitDiffusion
 from fpsolve.schemes.rotation import RotationDiffusion
+from fpsolve.schemes.stencils import shift_taps
 from fpsolve.schemes.translation import Translation
 
 GRID = PhaseSpaceGrid((3.0, 2.5), (8, 10, 12))
@@ -120,6 +121,58 @@ def test_diffusion_of_the_angle_is_exact_in_the_drift_kick_scheme():
         kick = RotationDiffusion(problem.model, problem.grid)
         result = applied(kick, problem.initial(), 0.0, 0.9)
         np.testing.assert_allclose(result, problem.density(0.9), rtol=0, atol=1e-15)
+
+
+def kicked_by_full_matrices(kick, p, ds):
+    """R½ D R½ row by row, with one Fourier matrix and one product for each."""
+    n = p.shape[2]
+    half, alpha = n // 2, kick.grid.alpha
+    modes = np.exp(-1j * np.outer(np.arange(half), alpha))
+    heat = np.exp(-kick.model.diffusivity * ds * np.arange(half + 1) ** 2)
+    strength = np.hypot(*kick.force)
+    out, ripple = np.empty_like(p), (-1.0) ** np.arange(n)
+    for i, j in np.ndindex(*p.shape[:2]):
+        phases = np.exp(1j * np.arange(half) * np.arctan2(*kick.force[::-1])[i, j])
+        angles = rotation_table.opening(strength[i, j : j + 1], ds)
+        matrix = rotation_table.matrices_at(angles, heat[:half], kick.balanced)[0]
+        moved = ((modes @ p[i, j]) * phases) @ matrix / phases
+        moved[1:] *= 2.0
+        out[i, j] = (moved @ modes.conj()).real / n
+        out[i, j] += heat[half] * (ripple @ p[i, j]) / n * ripple
+    return out
+
+
+@pytest.mark.parametrize("balanced", [False, True])
+@pytest.mark.parametrize("n_alpha", [4, 6, 8, 10, 12, 18])
+def test_folded_rows_in_quads_give_what_full_matrices_give(n_alpha, balanced, rng):
+    # Quarters of the circle with a half cell over, rows that share no matrix, and a
+    # batch that is not full.
+    grid = PhaseSpaceGrid((3.0, 2.5), (5, 7, n_alpha))
+    kick = RotationDiffusion(LayDownModel(QuadraticPotential(1.0, 0.8), 0.7), grid)
+    kick.balanced = balanced
+    p = rng.normal(size=grid.shape)
+    # Rounding of sums of at most 18 terms of size one.
+    np.testing.assert_allclose(
+        applied(kick, p), kicked_by_full_matrices(kick, p, 0.2), rtol=0, atol=1e-13
+    )
+
+
+@pytest.mark.parametrize("shape", [(4, 5, 4), (9, 7, 6), (6, 13, 18)])
+@pytest.mark.parametrize("ds", [0.3, -2.0, 9.0])
+def test_translations_are_their_taps_on_any_grid(shape, ds, rng):
+    # Sizes that are no multiple of a block; shifts within a cell, beyond a period, and
+    # to one side only.
+    grid = PhaseSpaceGrid((3.0, 2.5), shape)
+    translate = Translation(MODEL, grid, 6)
+    p, expected = rng.normal(size=shape), np.zeros(shape)
+    taps1, taps2 = (shift_taps(part, 6) for part in translate.shifts(0.3, ds))
+    for t, weight1 in enumerate(taps1[1], taps1[0]):
+        for u, weight2 in enumerate(taps2[1], taps2[0]):
+            expected += weight1 * weight2 * np.roll(p, (t, u), axis=(0, 1))
+    # Rounding of sums of 36 products, weights up to 1.
+    np.testing.assert_allclose(
+        applied(translate, p, 0.3, ds), expected, rtol=0, atol=2e-14
+    )
 
 
 @pytest.mark.parametrize("balanced", [False, True])

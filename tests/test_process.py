@@ -91,8 +91,8 @@ def test_a_belt_at_rest_and_a_process_without_noise_are_limiting_cases():
 @pytest.mark.parametrize(
     ("slip", "message"),
     [
-        ({"sigma1": 4.0}, "`sigma1` is 4 m, outside .* 0.001 to 0.05 m; millimetres"),
-        ({"sigma2": 4e-6}, "`sigma2` is 4e-06 m, outside the industrial range"),
+        ({"sigma1": 0.4}, "`sigma1` is 0.4 m, outside .* 0.001 to 0.05 m; millimetres"),
+        ({"sigma2": 4e-4}, "`sigma2` is 0.0004 m, outside the industrial range"),
         (
             {"noise": 0.3},
             r"`noise` is 0.3 m\^-1/2, outside .* 1 to 50 m.*; the dimension",

@@ -24,8 +24,8 @@ def test_names_are_listed_in_order_and_once():
 
 
 def test_importing_the_module_does_not_hide_the_function_of_that_name():
-    # Both packages have a function and a module of the same name.
-    for name in ("solve", "steady_state"):
+    # All have a function and a module of the same name.
+    for name in ("solve", "steady_state", "report"):
         module = importlib.import_module(f"fpsolve.{name}")
         assert isinstance(module, ModuleType)
         assert isinstance(getattr(fp, name), FunctionType)

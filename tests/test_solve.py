@@ -1,5 +1,6 @@
 """The run: what it records, saves and tells."""
 
+import numba
 import numpy as np
 import pytest
 from problems import DecayingCirculation
@@ -156,3 +157,24 @@ def test_a_bar_is_shown_on_request_only(capsys):
     assert capsys.readouterr().err == ""
     solve(drift_kick(MODEL, GRID), P0, (0.0, 0.25), 0.125, progress=True)
     assert "2/2" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("shape", "expected"), [((32, 32, 8), 1), ((64, 64, 32), 1), ((64, 64, 64), 2)]
+)
+def test_a_run_uses_a_thread_for_every_2_to_17_cells(model, shape, expected):
+    grid = PhaseSpaceGrid(6.0, shape)
+    used = []
+
+    class Watched(type(drift_kick(model, grid))):
+        def advance(self, *arguments):
+            used.append(numba.get_num_threads())
+            super().advance(*arguments)
+
+    before = numba.get_num_threads()
+    for allowed in (2, 1):
+        numba.set_num_threads(allowed)
+        solve(Watched(model, grid), initial.gaussian(grid, variance=0.5), (0, 0.1), 0.1)
+        assert numba.get_num_threads() == allowed
+    numba.set_num_threads(before)
+    assert used == [expected, 1]

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import argparse
+import os
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 HERE = Path(__file__).parent
@@ -19,22 +21,43 @@ SCRIPTS = (
     "rate_asymptotes.py",
     "large_noise_limit.py",
     "small_noise_limit.py",
+    "reliability/kill_and_resume.py",
+    "reliability/memory_of_saved_densities.py",
     "performance/run.py",
     "performance/paths.py",
     "performance/reduced.py",
 )
 
 
+def run(script: str, arguments: list[str], alone: bool) -> bool:
+    """Run one script and show what it prints; whether it ended well."""
+    command = [sys.executable, str(HERE / script), *arguments]
+    if alone:
+        print(f"== {script}", flush=True)
+        return subprocess.run(command, check=False).returncode == 0
+    # Beside others a script gets one core, and its output is shown when it ends.
+    one_core = {**os.environ, "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
+    done = subprocess.run(
+        command, check=False, env=one_core, text=True,
+        stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+    )  # fmt: skip
+    print(f"== {script}\n{done.stdout}", end="", flush=True)
+    return done.returncode == 0
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--quick", action="store_true")
-    arguments = ["--quick"] if parser.parse_args().quick else []
-    failed = []
-    for script in SCRIPTS:
-        print(f"== {script}", flush=True)
-        command = [sys.executable, str(HERE / script), *arguments]
-        if subprocess.run(command, check=False).returncode:
-            failed.append(script)
+    parser.add_argument(
+        "--jobs", type=int, default=1, help="scripts side by side; times suffer (1)"
+    )
+    options = parser.parse_args()
+    arguments = ["--quick"] if options.quick else []
+    with ThreadPoolExecutor(options.jobs) as pool:
+        ended_well = list(
+            pool.map(lambda script: run(script, arguments, options.jobs == 1), SCRIPTS)
+        )
+    failed = [one for one, well in zip(SCRIPTS, ended_well, strict=True) if not well]
     if failed:
         sys.exit(f"failed: {', '.join(failed)}")
 

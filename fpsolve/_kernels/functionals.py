@@ -5,65 +5,153 @@ Sums over ξ are left to numpy, so that they do not depend on threads.
 
 import numpy as np
 from numba import njit, prange
+from numba.extending import register_jitable
+
+from fpsolve._kernels.lanes import (
+    LANES,
+    larger,
+    mantissa_and_exponent,
+    parts,
+    put,
+    root,
+    smaller,
+    spread,
+    take,
+)
 
 # Staggered first difference of order eight: the weights of q[k+1+j] − q[k−j].
 NEAR, NEXT, THIRD, FAR = 1225.0 / 1024.0, -245.0 / 3072.0, 49.0 / 5120.0, -5.0 / 7168.0
 
-N_FUNCTIONALS = 6
+N_FUNCTIONALS = 7
+
+# Arguments of the logarithm: normal numbers, far below what carries mass.
+SMALLEST = 1e-300
+# ln 2 in two parts, the first with 32 bits, so that its multiples are exact.
+LN2_HIGH, LN2_LOW = 6.93147180369123816490e-01, 1.90821492927058770002e-10
+# ln((1 + s)/(1 − s)) = 2s + s R(s²), |s| ≤ 0.1716: minimax polynomial, error 2⁻⁵⁸,
+# of Sun's fdlibm.
+R1, R2, R3, R4, R5, R6, R7 = (
+    6.666666666666735130e-01, 3.999999999940941908e-01, 2.857142874366239149e-01,
+    2.222219843214978396e-01, 1.818357216161805012e-01, 1.531383769920937332e-01,
+    1.479819860511658591e-01,
+)  # fmt: skip
+
+
+@register_jitable(fastmath={"contract"}, error_model="numpy")
+def logarithm(x):
+    """ln x of four positive normal numbers, to one unit in the last place.
+
+    x = 2^e m with m in [√½, √2), and ln m by the polynomial of fdlibm: four at once,
+    which a call of a library's logarithm is not.
+    """
+    m, e = mantissa_and_exponent(x)
+    one = spread(1.0)
+    f = m - one
+    s = f / (m + one)
+    z = s * s
+    w = z * z
+    tail = w * (spread(R2) + w * (spread(R4) + w * spread(R6)))
+    tail = tail + z * (
+        spread(R1) + w * (spread(R3) + w * (spread(R5) + w * spread(R7)))
+    )
+    half = spread(0.5) * f * f
+    low = s * (half + tail) + e * spread(LN2_LOW)
+    return e * spread(LN2_HIGH) - ((half - low) - f)
+
+
+@register_jitable
+def summed(lanes):
+    """Sum of four lanes, in pairs."""
+    a, b, c, d = parts(lanes)
+    return (a + b) + (c + d)
 
 
 @njit(cache=True, fastmath={"contract"}, error_model="numpy")
-def squared_differences(padded, n_alpha):
+def squared_differences(padded, ones):
     """Σ_k (δq)²_{k+½} with the staggered eighth-order difference δ, unit spacing.
 
-    padded (n_alpha + 7,): q periodic with three cells before and four behind.
+    padded (N + 7,): q periodic with three cells before and four behind; ones (N,) is
+    zero for cells that are not counted, N a multiple of four.
     """
-    total = 0.0
-    for k in range(n_alpha):
+    total = spread(0.0)
+    for k in range(0, ones.size, LANES):
         slope = (
-            NEAR * (padded[k + 4] - padded[k + 3])
-            + NEXT * (padded[k + 5] - padded[k + 2])
-            + THIRD * (padded[k + 6] - padded[k + 1])
-            + FAR * (padded[k + 7] - padded[k])
+            spread(NEAR) * (take(padded, (k + 4,)) - take(padded, (k + 3,)))
+            + spread(NEXT) * (take(padded, (k + 5,)) - take(padded, (k + 2,)))
+            + spread(THIRD) * (take(padded, (k + 6,)) - take(padded, (k + 1,)))
+            + spread(FAR) * (take(padded, (k + 7,)) - take(padded, (k,)))
         )
-        total += slope * slope
-    return total
+        total = total + take(ones, (k,)) * slope * slope
+    return summed(total)
+
+
+@njit(cache=True, fastmath={"contract"}, error_model="numpy")
+def information(positive, inverse):
+    """Σ_k p ln(p inverse); positive (N,) holds p ≥ 0, N a multiple of four."""
+    total, scale, smallest = spread(0.0), spread(inverse), spread(SMALLEST)
+    for k in range(0, positive.size, LANES):
+        p = take(positive, (k,))
+        total = total + p * logarithm(larger(p * scale, smallest))
+    return summed(total)
+
+
+@njit(cache=True, fastmath={"contract"}, error_model="numpy")
+def read_row(row, cosine, sine, ones, positive, roots, out):
+    """out[:6] = Σ p, Σ p cos α, Σ p sin α, unused, min p, Σ max(−p, 0) of a row.
+
+    All rows (N,), N a multiple of four; positive = max(p, 0) · ones and
+    roots[k + 3] = √max(p, 0) are left for what follows.
+    """
+    total = total_cosine = total_sine = negative = zero = spread(0.0)
+    lowest = take(row, (0,))
+    for k in range(0, row.size, LANES):
+        p, counted = take(row, (k,)), take(ones, (k,))
+        below = smaller(p, zero)
+        above = p - below
+        total = total + counted * p
+        total_cosine = total_cosine + take(cosine, (k,)) * p
+        total_sine = total_sine + take(sine, (k,)) * p
+        negative = negative - counted * below
+        lowest = smaller(lowest, p)
+        put(positive, (k,), counted * above)
+        put(roots, (k + 3,), root(above))
+    a, b, c, d = parts(lowest)
+    out[0], out[1], out[2] = summed(total), summed(total_cosine), summed(total_sine)
+    out[4], out[5] = min(min(a, b), min(c, d)), summed(negative)
 
 
 @njit(cache=True, parallel=True, fastmath={"contract"}, error_model="numpy")
-def row_functionals(p, cosine, sine, out):
-    """out[i, j] = Σ_k of p, p cos α, p sin α, (δ√p)², min_k p, and Σ_k max(−p, 0).
+def row_functionals(p, cosine, sine, inverse, out):
+    """out[i, j] = Σ_k of p, p cos α, p sin α, (δ√p)², min_k p, Σ_k max(−p, 0), p ln q.
 
-    p (n1, n2, n_alpha); cosine, sine (n_alpha,); out (n1, n2, 6). Negative values
-    count as zero under the root.
+    p (n1, n2, n_alpha); cosine, sine (n_alpha,); q = p inverse with inverse (n1, n2),
+    or (1, 1) for no logarithms; out (n1, n2, 7). Negative values count as zero under
+    the root and in p ln q.
     """
     n1, n2, n_alpha = p.shape
+    n = n_alpha + (-n_alpha) % LANES
+    # Rows are extended to full registers by cells of weight zero.
+    weights = np.zeros((3, n))
+    weights[0, :n_alpha], weights[1, :n_alpha] = cosine, sine
+    weights[2, :n_alpha] = 1.0
     for i in prange(n1):
-        padded = np.empty(n_alpha + 8)
+        rows = np.empty((2, n))
+        roots = np.empty(n + 8)
         for j in range(n2):
-            total = 0.0
-            total_cosine = 0.0
-            total_sine = 0.0
-            lowest = p[i, j, 0]
-            negative = 0.0
+            row = rows[0]
             for k in range(n_alpha):
-                value = p[i, j, k]
-                total += value
-                total_cosine += value * cosine[k]
-                total_sine += value * sine[k]
-                lowest = min(lowest, value)
-                negative += max(-value, 0.0)
-                padded[k + 3] = np.sqrt(max(value, 0.0))
+                row[k] = p[i, j, k]
+            for k in range(n_alpha, n):
+                row[k] = row[0]
+            read_row(row, weights[0], weights[1], weights[2], rows[1], roots, out[i, j])
             for k in range(3):
-                padded[k] = padded[k + n_alpha]
+                roots[k] = roots[k + n_alpha]
             for k in range(5):
-                padded[n_alpha + 3 + k] = padded[k + 3]
-            out[i, j, 0] = total
-            out[i, j, 1] = total_cosine
-            out[i, j, 2] = total_sine
-            out[i, j, 3] = squared_differences(padded, n_alpha)
-            out[i, j, 4] = lowest
-            out[i, j, 5] = negative
+                roots[n_alpha + 3 + k] = roots[k + 3]
+            out[i, j, 3] = squared_differences(roots, weights[2])
+            out[i, j, 6] = 0.0
+            if inverse.size > 1:
+                out[i, j, 6] = information(rows[1], inverse[i, j])
 
 
 @njit(cache=True, parallel=True, fastmath={"contract"}, error_model="numpy")

@@ -11,12 +11,16 @@ from typing import Annotated
 import typer
 
 from fpsolve.cli.check import check
+from fpsolve.cli.compare import compare
 from fpsolve.cli.energy import energy
 from fpsolve.cli.info import info
 from fpsolve.cli.limits import limits
 from fpsolve.cli.paths import paths
 from fpsolve.cli.plot import plot
 from fpsolve.cli.rate import rate
+from fpsolve.cli.report import report
+from fpsolve.cli.rerun import rerun
+from fpsolve.cli.resume import resume
 from fpsolve.cli.run import run
 from fpsolve.cli.spectrum import spectrum
 
@@ -27,11 +31,11 @@ app = typer.Typer(
     help="Solve the Fokker-Planck equation of stochastic fibre lay-down.",
     epilog="Example: fpsolve run --out results",
     no_args_is_help=True,
-    add_completion=False,
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
 )
 app.command(epilog="Example: fpsolve run --example spunbond --out results")(run)
+app.command(epilog="Example: fpsolve resume results/laydown.checkpoint")(resume)
 app.command(epilog="Example: fpsolve paths --n-paths 10000 --out results")(paths)
 app.command(epilog="Example: fpsolve check --n-paths 100000 --out results")(check)
 app.command(epilog="Example: fpsolve rate --quick --out results")(rate)
@@ -39,6 +43,9 @@ app.command(epilog="Example: fpsolve spectrum --potential linear --noise 0.8")(s
 app.command(epilog="Example: fpsolve energy --noise 0.3 --passage 0.1 0.5")(energy)
 app.command(epilog="Example: fpsolve limits small-noise --quick")(limits)
 app.command(epilog="Example: fpsolve plot results/laydown.nc --movie")(plot)
+app.command(epilog="Example: fpsolve report results/laydown.nc")(report)
+app.command(epilog="Example: fpsolve rerun results/laydown.nc --out again")(rerun)
+app.command(epilog="Example: fpsolve compare results/a.nc results/b.nc")(compare)
 app.command(epilog="Example: fpsolve info")(info)
 
 

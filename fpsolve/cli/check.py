@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from fpsolve.cli.command import command_line
 from fpsolve.cli.errors import FAILED, reported_errors
 from fpsolve.cli.run import Config, Example, NoFigures, Out, Threads
 
 if TYPE_CHECKING:
-    from fpsolve.config import Problem, RunConfig
+    from fpsolve.config import Problem
     from fpsolve.studies import CrossCheck
 
 __all__ = ["check"]
@@ -59,6 +60,9 @@ def check(
     seen. Writes the numbers and a figure. The exit code is 1 if they disagree.
     """
     with reported_errors():
+        from fpsolve.io.atomic import check_folder
+
+        check_folder(out, "--out")
         from fpsolve.cli.run import read_config, set_threads
 
         chosen = read_config(config, example)
@@ -70,7 +74,14 @@ def check(
             n_paths=n_paths, seed=seed, false_alarm=false_alarm,
         )  # fmt: skip
         print_check(result)
-        _write(result, chosen, out, figures=chosen.output.figures and not no_figures)
+        used = command_line(
+            "check", *([] if config is None else [config.name]), example=example,
+            n_paths=n_paths, seed=seed, at=places, paths_ds=paths_ds,
+            false_alarm=false_alarm,
+        )  # fmt: skip
+        used["configuration"] = chosen.resolved(problem).to_toml()
+        figures = chosen.output.figures and not no_figures
+        _write(result, chosen.output.name, out, used, figures=figures)
         if not result.agrees:
             raise typer.Exit(FAILED)
 
@@ -81,45 +92,16 @@ def print_check(check: CrossCheck) -> None:
     from rich.console import Console
     from rich.table import Table
 
+    from fpsolve.report.cross_check import HEADINGS, summary_row
+
     console = Console(highlight=False, markup=False)
     table = Table(box=box.SIMPLE_HEAD)
-    for name in _COLUMNS:
+    for name in HEADINGS:
         table.add_column(name, justify="right")
     for s in check.s:
-        table.add_row(*_row(check, float(s)))
+        table.add_row(*summary_row(check, float(s)))
     console.print(table)
     console.print(str(check))
-
-
-_COLUMNS = (
-    "s",
-    "χ²/k of cells",
-    "p",
-    "largest cell",
-    "p of ξ₁, ξ₂, α",
-    "largest moment",
-    "tests failed",
-)
-
-
-def _row(check: CrossCheck, s: float) -> tuple[str, ...]:
-    from fpsolve.studies.wording import LABELS
-
-    cells, single = check.test("cells", s), check.test("largest cell", s)
-    lines = [check.test(f"marginal {which}", s) for which in ("xi1", "xi2", "alpha")]
-    tests = [test for test in check.tests if test.s == s]
-    moments = [test for test in tests if test.degrees is None]
-    worst = max(moments, key=lambda test: abs(test.statistic))
-    failed = sum(not test.agrees for test in tests)
-    return (
-        f"{s:g}",
-        f"{cells.statistic / max(cells.degrees or 0, 1):.3f}",
-        f"{cells.p_value:.2g}",
-        f"|z| = {single.statistic:.2f}",
-        ", ".join(f"{line.p_value:.2g}" for line in lines),
-        f"{LABELS[worst.name]}, z = {worst.statistic:+.2f}",
-        f"{failed} of {len(tests)}",
-    )
 
 
 def _places(problem: Problem) -> list[float]:
@@ -157,21 +139,22 @@ def _compare(
         )
 
 
-def _write(check: CrossCheck, config: RunConfig, out: Path, figures: bool) -> None:
+def _write(
+    check: CrossCheck, name: str, out: Path, used: dict[str, str], figures: bool
+) -> None:
     """Write verdict and tests as JSON, all numbers as netCDF, and the figure."""
-    from fpsolve.io.atomic import atomic_path
+    from fpsolve.io.atomic import atomic_path, made_folder
+    from fpsolve.io.writing import write_dataset
 
-    out.mkdir(parents=True, exist_ok=True)
-    stem = f"{config.output.name}-check"
+    made_folder(out, "--out")
+    stem = f"{name}-check"
     numbers = out / f"{stem}.json"
     with atomic_path(numbers) as draft:
         text = json.dumps(check.to_dict(), indent=1, ensure_ascii=False)
         draft.write_text(text, encoding="utf-8")
     typer.echo(numbers)
-    dataset = out / f"{stem}.nc"
-    with atomic_path(dataset) as draft:
-        check.to_xarray().to_netcdf(draft, engine="h5netcdf")
-    typer.echo(dataset)
+    dataset = check.to_xarray().assign_attrs(used)
+    typer.echo(write_dataset(dataset, out / f"{stem}.nc"))
     if figures:
         typer.echo(_draw(check, out / f"{stem}.png"))
 

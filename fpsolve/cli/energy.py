@@ -7,8 +7,17 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from fpsolve.cli.command import command_line
+from fpsolve.cli.completion import KINDS, proposing
 from fpsolve.cli.errors import reported_errors
-from fpsolve.cli.potentials import Exponent, Sigma1, Sigma2, Slope, make_potential
+from fpsolve.cli.potentials import (
+    Exponent,
+    Sigma1,
+    Sigma2,
+    Slope,
+    make_potential,
+    potential_options,
+)
 from fpsolve.cli.run import NoFigures, Out
 
 if TYPE_CHECKING:
@@ -20,7 +29,12 @@ __all__ = ["energy"]
 
 Kind = Annotated[
     str,
-    typer.Option("--potential", metavar="KIND", help="quadratic, linear or power."),
+    typer.Option(
+        "--potential",
+        metavar="KIND",
+        help="quadratic, linear or power.",
+        autocompletion=proposing(*KINDS),
+    ),
 ]
 Noise = Annotated[float, typer.Option(metavar="A", help="Noise amplitude.")]
 Energies = Annotated[
@@ -36,15 +50,6 @@ Passage = Annotated[
         help="Expected length of fibre until the energy has come from one to another.",
     ),
 ]
-
-_COLUMNS = {
-    "g": "g",
-    "r_min": "r_min",
-    "r_max": "r_max",
-    "period": "period S",
-    "variance": "σ²(g)",
-    "stationary_density": "density S/∫S",
-}
 
 
 def energy(
@@ -67,6 +72,9 @@ def energy(
     G = r exp(-B(r)) sin β, β the angle between fibre and radius.
     """
     with reported_errors():
+        from fpsolve.io.atomic import check_folder
+
+        check_folder(out, "--out")
         from fpsolve.io.energy import tables_dataset
         from fpsolve.reduced.energy import EnergyProcess
 
@@ -77,7 +85,11 @@ def energy(
         _print(process, tables)
         if walk is not None:
             typer.echo(walk)
-        _write(process, tables, out, not no_figures)
+        used = command_line(
+            "energy", **potential_options(chosen), noise=noise, energies=energies,
+            count=count,
+        )  # fmt: skip
+        _write(process, tables.assign_attrs(used), out, not no_figures)
 
 
 def _passage(process: EnergyProcess, start: float, target: float) -> str:
@@ -94,15 +106,17 @@ def _print(process: EnergyProcess, tables: xr.Dataset) -> None:
     from rich.console import Console
     from rich.table import Table
 
+    from fpsolve.report.energy import COEFFICIENTS
+
     console = Console(highlight=False, markup=False)
     console.print(
         f"energy process, B = {process.potential.formula}, A = {process.noise:g}: "
         f"circle r = {process.radius:.6g}, g_max = {process.g_max:.6g}"
     )
     table = Table(box=box.SIMPLE_HEAD)
-    for title in _COLUMNS.values():
+    for title in COEFFICIENTS.values():
         table.add_column(title, justify="right")
-    for row in zip(*(tables[name].to_numpy() for name in _COLUMNS), strict=True):
+    for row in zip(*(tables[name].to_numpy() for name in COEFFICIENTS), strict=True):
         table.add_row(*(f"{value:.5g}" for value in row))
     console.print(table)
     for family, meaning in (("even", "|G|"), ("odd", "sign of G")):
@@ -117,13 +131,11 @@ def _print(process: EnergyProcess, tables: xr.Dataset) -> None:
 def _write(
     process: EnergyProcess, tables: xr.Dataset, out: Path, figures: bool
 ) -> None:
-    from fpsolve.io.atomic import atomic_path
+    from fpsolve.io.atomic import made_folder
+    from fpsolve.io.writing import write_dataset
 
-    out.mkdir(parents=True, exist_ok=True)
-    numbers = out / "energy.nc"
-    with atomic_path(numbers) as draft:
-        tables.to_netcdf(draft, engine="h5netcdf")
-    typer.echo(numbers)
+    made_folder(out, "--out")
+    typer.echo(write_dataset(tables, out / "energy.nc"))
     if figures:
         _draw(process, out)
 

@@ -5,9 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
-from fpsolve.cli.numbers import with_error
 from fpsolve.cli.plan import units_text, with_options
 
 if TYPE_CHECKING:
@@ -15,15 +12,6 @@ if TYPE_CHECKING:
     from fpsolve.paths import Paths
 
 __all__ = ["print_moments", "print_paths_plan"]
-
-_MOST_ROWS = 11
-_COLUMNS = {
-    "E ξ₁": "mean_xi1",
-    "E ξ₂": "mean_xi2",
-    "Var ξ₁": "variance_xi1",
-    "Var ξ₂": "variance_xi2",
-    "E cos α": "mean_cos_alpha",
-}
 
 
 def print_paths_plan(
@@ -80,29 +68,17 @@ def print_moments(paths: Paths) -> None:
     from rich.console import Console
     from rich.table import Table
 
+    from fpsolve.report.paths import MOMENTS, moment_rows
+
     console = Console(highlight=False, markup=False)
     table = Table(box=box.SIMPLE_HEAD)
-    moments = paths.moments()
-    for name in ("s", *_COLUMNS):
+    for name in ("s", *MOMENTS):
         table.add_column(name, justify="right")
-    for row in _rows(len(moments.s)):
-        cells = [
-            with_error(
-                float(moments.values[name][row]),
-                float(moments.standard_errors[name][row]),
-            )
-            for name in _COLUMNS.values()
-        ]
-        table.add_row(f"{moments.s[row]:.4g}", *cells)
+    for row in moment_rows(paths):
+        table.add_row(*row)
     console.print(table)
     console.print("in parentheses: one standard error, in units of the last digit")
     console.print(_speed(paths))
-
-
-def _rows(n_saved: int) -> list[int]:
-    """Return places evenly spread over the saved arclengths."""
-    places = np.linspace(0, n_saved - 1, min(n_saved, _MOST_ROWS))
-    return [int(place) for place in places.round()]
 
 
 def _speed(paths: Paths) -> str:

@@ -13,6 +13,10 @@ import typer
 __all__ = ["BAD_INPUT", "FAILED", "INTERRUPTED", "fail", "reported_errors", "say"]
 
 FAILED, BAD_INPUT, INTERRUPTED = 1, 2, 130
+_NO_MEMORY = (
+    "memory must suffice, got none any more; choose a coarser grid, fewer paths or "
+    "fewer saved densities."
+)
 
 
 @contextmanager
@@ -44,6 +48,8 @@ def reported_errors() -> Iterator[None]:
             fail(error, BAD_INPUT)
         except (FpsolveError, OSError) as error:
             fail(error, FAILED)
+        except MemoryError:
+            fail(_NO_MEMORY, FAILED)
         except KeyboardInterrupt:
             fail("interrupted", INTERRUPTED)
 

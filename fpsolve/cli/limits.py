@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import json
-import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from fpsolve.cli.command import command_line
+from fpsolve.cli.completion import KINDS, proposing
 from fpsolve.cli.errors import FAILED, INTERRUPTED, fail, reported_errors, say
 from fpsolve.cli.potentials import (
     Exponent,
@@ -16,6 +17,7 @@ from fpsolve.cli.potentials import (
     Sigma2,
     Slope,
     make_potential,
+    potential_options,
 )
 from fpsolve.cli.rate import Scheduler, Workers, case_bar, save_figure
 from fpsolve.cli.run import NoFigures, Out
@@ -37,7 +39,12 @@ Which = Annotated[
 ]
 Kind = Annotated[
     str,
-    typer.Option("--potential", metavar="KIND", help="quadratic, linear or power."),
+    typer.Option(
+        "--potential",
+        metavar="KIND",
+        help="quadratic, linear or power.",
+        autocompletion=proposing(*KINDS),
+    ),
 ]
 Noises = Annotated[
     list[float] | None,
@@ -74,6 +81,9 @@ def limits(
     was stopped.
     """
     with reported_errors():
+        from fpsolve.io.atomic import check_folder
+
+        check_folder(out, "--out")
         chosen = _chosen(which, noise)
         one = make_potential(potential, sigma1, sigma2, slope, exponent)
         options = {"quick": quick, "client": scheduler, "workers": workers}
@@ -116,6 +126,11 @@ def _study(
     except RunInterrupted as interrupt:
         _write(interrupt.solution, name, out, "-interrupted")
         fail("interrupted; what was finished is kept", INTERRUPTED)
+    used = command_line(
+        "limits", name, **potential_options(potential), noise=noises,
+        quick=options["quick"],
+    )  # fmt: skip
+    found = found.assign_attrs(used)
     _print(found, name)
     typer.echo(_write(found, name, out))
     if figures:
@@ -136,8 +151,10 @@ def _print(dataset: xr.Dataset, name: str) -> None:
     from rich.console import Console
     from rich.table import Table
 
+    from fpsolve.report.limits import large_rows, small_rows
+
     table = Table(box=box.SIMPLE_HEAD, title=f"{name}, B = {dataset.attrs['formula']}")
-    rows = _large_rows(dataset) if name == LARGE else _small_rows(dataset)
+    rows = large_rows(dataset) if name == LARGE else small_rows(dataset)
     for heading in rows[0]:
         table.add_column(heading, justify="left" if heading == "quantity" else "right",
                          vertical="bottom", no_wrap=True)  # fmt: skip
@@ -153,54 +170,13 @@ def _print(dataset: xr.Dataset, name: str) -> None:
         console.print("orders in A²; paths: distance by paths and by chance alone")
 
 
-def _large_rows(dataset: xr.Dataset) -> list[dict[str, str]]:
-    rows, last = [], ""
-    for quantity in dataset["quantity"].to_numpy():
-        one = dataset.sel(quantity=quantity)
-        part, measure = str(quantity).split("/")
-        row = {"quantity": f"{part}:\n  {measure}" if part != last else f"  {measure}"}
-        last = part
-        for noise in dataset["noise"].to_numpy():
-            distance = float(one["distance"].sel(noise=noise))
-            error = float(one["distance_error"].sel(noise=noise))
-            mark = "*" if distance < 3 * error else ""
-            row[f"A = {noise:g}"] = _number(distance) + mark
-        row["derived"] = _number(float(one["expected_order"]))
-        row["fitted"] = _number(float(one["fitted_order"]))
-        rows.append(row)
-    return rows
-
-
-def _small_rows(dataset: xr.Dataset) -> list[dict[str, str]]:
-    rows = []
-    for w in dataset["belt_speed_scale"].to_numpy():
-        for noise in dataset["noise"].to_numpy():
-            one = dataset.sel(belt_speed_scale=w, noise=noise)
-            names = {
-                "distance": "distance", "± cells": "distance_error",
-                "order": "observed_order", "E G": "mean", "exact at rest": "exact_mean",
-                "paths": "paths_distance", "chance": "paths_distance_by_chance",
-            }  # fmt: skip
-            row = {"v/A²": f"{w:g}", "A": f"{noise:g}"}
-            rows.append(
-                row | {key: _number(float(one[at])) for key, at in names.items()}
-            )
-    return rows
-
-
-def _number(value: float) -> str:
-    return f"{value:.2g}" if math.isfinite(value) else "-"
-
-
 def _write(dataset: xr.Dataset, name: str, out: Path, suffix: str = "") -> Path:
-    from fpsolve.io.atomic import atomic_path
+    from fpsolve.io.atomic import made_folder
+    from fpsolve.io.writing import write_dataset
 
-    out.mkdir(parents=True, exist_ok=True)
+    made_folder(out, "--out")
     kind = json.loads(dataset.attrs["potential"])["kind"]
-    path = out / f"{name}-{kind}{suffix}.nc"
-    with atomic_path(path) as draft:
-        dataset.to_netcdf(draft, engine="h5netcdf")
-    return path
+    return write_dataset(dataset, out / f"{name}-{kind}{suffix}.nc")
 
 
 def _draw(dataset: xr.Dataset, name: str, out: Path) -> None:

@@ -51,6 +51,9 @@ def paths(
     stops the sampling and writes what was finished until then.
     """
     with reported_errors():
+        from fpsolve.io.atomic import check_folder
+
+        check_folder(out, "--out")
         from fpsolve.cli.run import set_threads
 
         chosen = _read(config)
@@ -82,12 +85,9 @@ def _sample(config: PathsConfig, out: Path, seed_from: str) -> None:
     from fpsolve.cli import progress
     from fpsolve.cli.ensemble import print_paths_plan
     from fpsolve.errors import RunError, RunInterrupted
-    from fpsolve.io.files import check_engine
     from fpsolve.paths import sample_paths
 
-    check_engine("zarr" if config.output.format == "zarr" else "h5netcdf")
     problem = config.build()
-    out.mkdir(parents=True, exist_ok=True)
     config = config.resolved(problem)
     print_paths_plan(config, problem, out, seed_from)
     try:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from fpsolve.config import Problem, RunConfig
 
-__all__ = ["print_plan", "units_text", "with_options"]
+__all__ = ["print_plan", "suggestions", "units_text", "with_options"]
 
 
 def print_plan(config: RunConfig, problem: Problem, out: Path) -> None:
@@ -34,6 +34,13 @@ def _lines(config: RunConfig, problem: Problem, out: Path) -> list[tuple[str, st
         ("result", str(out / config.output.file_name)),
     ]
     return lines
+
+
+def suggestions(problem: Problem) -> dict[str, str]:
+    """Return why grid and step were suggested, for those that were."""
+    chosen = {"grid": problem.grid, "ds": problem.arguments["ds"]}
+    reasons = {name: getattr(value, "reason", None) for name, value in chosen.items()}
+    return {name: reason for name, reason in reasons.items() if reason is not None}
 
 
 def units_text(process: Any) -> str:

@@ -37,8 +37,12 @@ def plot(
     with reported_errors():
         from fpsolve import plotting
         from fpsolve.io import load
+        from fpsolve.io.atomic import check_folder
+        from fpsolve.plotting.movie import check_movie
         from fpsolve.solution import Solution
 
+        if out is not None:
+            check_folder(out, "--out")
         result = load(file)
         if movie and not isinstance(result, Solution):
             raise ValueError(
@@ -46,6 +50,9 @@ def plot(
                 f"in `{file}`; leave it out."
             )
         folder = file.parent if out is None else out
+        if movie:
+            # A figure already written would be all that is left of the mistake.
+            check_movie(result, folder / f"{file.stem}.gif", fps)
         for path in plotting.save_figures(result, folder, prefix=f"{file.stem}-"):
             typer.echo(path)
         if movie and isinstance(result, Solution):

@@ -9,7 +9,14 @@ import typer
 if TYPE_CHECKING:
     from fpsolve.potentials import Potential
 
-__all__ = ["Exponent", "Sigma1", "Sigma2", "Slope", "make_potential"]
+__all__ = [
+    "Exponent",
+    "Sigma1",
+    "Sigma2",
+    "Slope",
+    "make_potential",
+    "potential_options",
+]
 
 Sigma1 = Annotated[
     float, typer.Option("--sigma1", help="Throwing range σ1 of a quadratic potential.")
@@ -49,3 +56,11 @@ def make_potential(
     if kind == "free":
         return FreePotential()
     raise ValueError(f"`--potential` must be one of {', '.join(KINDS)}, got {kind!r}.")
+
+
+def potential_options(potential: Potential) -> dict[str, str | float]:
+    """Return the options with which `make_potential` makes this one."""
+    parameters = potential.to_dict()
+    names = {"sigma1", "sigma2", "slope", "exponent"}
+    own = {name: float(parameters[name]) for name in names & parameters.keys()}
+    return {"potential": potential.kind, **dict(sorted(own.items()))}

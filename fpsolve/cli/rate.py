@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -10,14 +9,16 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from fpsolve.cli.command import command_line
+from fpsolve.cli.completion import KINDS, PARTS, proposing
 from fpsolve.cli.errors import FAILED, INTERRUPTED, fail, reported_errors
-from fpsolve.cli.numbers import with_error
 from fpsolve.cli.potentials import (
     Exponent,
     Sigma1,
     Sigma2,
     Slope,
     make_potential,
+    potential_options,
 )
 from fpsolve.cli.run import NoFigures, Out
 
@@ -34,6 +35,7 @@ Potentials = Annotated[
         "--potential",
         metavar="KIND",
         help="quadratic, linear or power; may be given several times.",
+        autocompletion=proposing(*KINDS),
         show_default="quadratic and linear",
     ),
 ]
@@ -54,6 +56,7 @@ Parts = Annotated[
         metavar="NAME",
         help="relaxation, evolution, branches, gap or variance; may be given several "
         "times.",
+        autocompletion=proposing(*PARTS),
         show_default="all",
     ),
 ]
@@ -100,6 +103,9 @@ def rate(
     OUT/rate-cases, so that the same command goes on where it was stopped.
     """
     with reported_errors():
+        from fpsolve.io.atomic import check_folder
+
+        check_folder(out, "--out")
         from fpsolve.errors import RunInterrupted
 
         amplitudes = noise if noise else _default_noises(quick)
@@ -116,6 +122,11 @@ def rate(
             parts = _parts_for(one, part)
             try:
                 studies.append(_study(one, amplitudes, parts, out, options))
+                used = command_line(
+                    "rate", **potential_options(one), noise=amplitudes, part=parts,
+                    quick=quick, tolerance=tolerance,
+                )  # fmt: skip
+                studies[-1] = studies[-1].assign_attrs(used)
             except RunInterrupted as interrupt:
                 _write(interrupt.solution, out, "-interrupted")
                 fail("interrupted; what was finished is kept", INTERRUPTED)
@@ -132,38 +143,17 @@ def print_rates(dataset: xr.Dataset) -> None:
     from rich.console import Console
     from rich.table import Table
 
+    from fpsolve.report.rates import rate_columns
+
     console = Console(highlight=False, markup=False)
     table = Table(box=box.SIMPLE_HEAD, title=f"B = {dataset.attrs['formula']}")
-    columns = {name: read for name, read in _COLUMNS.items() if read[0] in dataset}
-    for name in ("A", *columns):
+    columns = rate_columns(dataset)
+    for name in columns:
         table.add_column(name, justify="right")
-    for row in range(dataset.sizes["noise"]):
-        one = dataset.isel(noise=row)
-        cells = [_cell(one, *read) for read in columns.values()]
-        table.add_row(f"{float(one['noise']):.4g}", *cells)
+    for row in zip(*columns.values(), strict=True):
+        table.add_row(*row)
     console.print(table)
     console.print("in parentheses: the error in units of the last digit")
-
-
-# Heading: (variable, its error or None, factor).
-_COLUMNS: dict[str, tuple[str, str | None, float]] = {
-    "∫ H ds": ("inverse_decay_rate", "inverse_decay_rate_error", 1.0),
-    "spectral ∫ H ds": (
-        "spectral_inverse_decay_rate", "spectral_inverse_decay_rate_error", 1.0,
-    ),
-    "½ rate of H": ("entropy_rate", "entropy_rate_error", 0.5),
-    "spectral gap": ("gap", "gap_error", 1.0),
-    "proven": ("hypocoercive_bound", None, 1.0),
-}  # fmt: skip
-
-
-def _cell(one: xr.Dataset, name: str, error: str | None, factor: float) -> str:
-    value = factor * float(one[name])
-    if not math.isfinite(value):
-        return "-"
-    if error is None:
-        return f"{value:.3g}"
-    return with_error(value, factor * float(one[error]))
 
 
 def _default_noises(quick: bool) -> list[float]:
@@ -223,14 +213,12 @@ def case_bar(title: str) -> Iterator[Callable[[int, int, Any], None]]:
 def _write(dataset: xr.Dataset, out: Path, suffix: str = "") -> Path:
     import json
 
-    from fpsolve.io.atomic import atomic_path
+    from fpsolve.io.atomic import made_folder
+    from fpsolve.io.writing import write_dataset
 
-    out.mkdir(parents=True, exist_ok=True)
+    made_folder(out, "--out")
     kind = json.loads(dataset.attrs["potential"])["kind"]
-    path = out / f"rate-{kind}{suffix}.nc"
-    with atomic_path(path) as draft:
-        dataset.to_netcdf(draft, engine="h5netcdf")
-    return path
+    return write_dataset(dataset, out / f"rate-{kind}{suffix}.nc")
 
 
 def _draw(studies: list[xr.Dataset], out: Path) -> None:

@@ -7,13 +7,22 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from fpsolve.cli.errors import FAILED, INTERRUPTED, fail, reported_errors
+from fpsolve.cli.completion import EXAMPLES, proposing
+from fpsolve.cli.errors import reported_errors
+from fpsolve.cli.solving import solve_and_write
 
 if TYPE_CHECKING:
-    from fpsolve.config import Problem, RunConfig
-    from fpsolve.solution import Solution
+    from fpsolve.checkpoints import Checkpoint
+    from fpsolve.config import RunConfig
 
-__all__ = ["read_config", "run", "set_threads"]
+__all__ = [
+    "KeepCheckpoint",
+    "NoFigures",
+    "Threads",
+    "read_config",
+    "run",
+    "set_threads",
+]
 
 Config = Annotated[
     Path | None,
@@ -29,6 +38,7 @@ Example = Annotated[
     typer.Option(
         metavar="NAME",
         help="Run a packaged example: laydown or spunbond.",
+        autocompletion=proposing(*EXAMPLES),
         show_default=False,
     ),
 ]
@@ -36,6 +46,20 @@ NoFigures = Annotated[bool, typer.Option("--no-figures", help="Draw no figures."
 Threads = Annotated[
     int | None,
     typer.Option(min=1, help="Threads for the kernels.", show_default="all"),
+]
+Every = Annotated[
+    str | None,
+    typer.Option(
+        metavar="EVERY",
+        help="Write a checkpoint every so many steps, 100, or so often, 30s or 5min.",
+        show_default=False,
+    ),
+]
+KeepCheckpoint = Annotated[
+    bool,
+    typer.Option(
+        "--keep-checkpoint", help="Leave the checkpoint when the result is written."
+    ),
 ]
 
 
@@ -45,19 +69,21 @@ def run(
     example: Example = None,
     no_figures: NoFigures = False,
     threads: Threads = None,
+    checkpoint: Every = None,
+    keep_checkpoint: KeepCheckpoint = False,
 ) -> None:
     """Solve what a configuration describes.
 
     Writes the result, the configuration used and figures, and prints a table. Ctrl-C
-    stops the run and writes what was recorded until then.
+    stops the run and writes what was recorded until then. With `--checkpoint`, a run
+    that was stopped or killed goes on by the same command or by `fpsolve resume`.
     """
     with reported_errors():
         chosen = read_config(config, example)
         if no_figures:
-            output = chosen.output.model_copy(update={"figures": False})
-            chosen = chosen.model_copy(update={"output": output})
+            chosen = chosen.without_figures()
         set_threads(threads)
-        _solve(chosen, out)
+        _solve(chosen, out, checkpoint, keep_checkpoint)
 
 
 def read_config(config: Path | None, example: str | None) -> RunConfig:
@@ -90,39 +116,23 @@ def set_threads(threads: int | None) -> None:
     numba.set_num_threads(threads)
 
 
-def _solve(config: RunConfig, out: Path) -> None:
-    from fpsolve.cli.plan import print_plan
-    from fpsolve.errors import RunError, RunInterrupted
-    from fpsolve.io.files import check_engine
+def _solve(config: RunConfig, out: Path, every: str | None, keep: bool) -> None:
+    from fpsolve.checkpoints.every import parse_interval
+    from fpsolve.io.atomic import check_folder, made_folder
 
-    check_engine("zarr" if config.output.format == "zarr" else "h5netcdf")
-    out.mkdir(parents=True, exist_ok=True)
-    problem = config.build()
+    check_folder(out, "--out")
+    if every is not None:
+        parse_interval(every)
+    problem = config.build(saved_in_memory=every is None)
     config = config.resolved(problem)
-    print_plan(config, problem, out)
-    try:
-        solution = _evolve(problem)
-    except RunInterrupted as interrupt:
-        _write(interrupt.solution, config, out, figures=False)
-        fail("interrupted; what was recorded until then is kept", INTERRUPTED)
-    except RunError as error:
-        if error.solution is not None:
-            _write(error.solution, config, out, figures=False)
-        fail(error, FAILED)
-    _write(solution, config, out, figures=config.output.figures)
+    if every is not None:
+        made_folder(out, "--out")
+    checkpoint = None if every is None else _checkpoint(config, out, every)
+    solve_and_write(problem, config, out, checkpoint, keep)
 
 
-def _evolve(problem: Problem) -> Solution:
-    # Not `from fpsolve.solve import solve`: a test replaces the bar in its module.
-    from fpsolve.cli import progress
-    from fpsolve.solve import solve
+def _checkpoint(config: RunConfig, out: Path, every: str) -> Checkpoint:
+    from fpsolve.checkpoints import Checkpoint
 
-    with progress.progress_bar() as report:
-        return solve(problem.scheme, problem.p0, **problem.arguments, progress=report)
-
-
-def _write(solution: Solution, config: RunConfig, out: Path, figures: bool) -> None:
-    from fpsolve.cli.report import print_report
-    from fpsolve.cli.writing import write_result
-
-    write_result(solution, config, out, figures=figures, show=print_report)
+    folder = out / f"{config.output.name}.checkpoint"
+    return Checkpoint(folder, every, {"configuration": config.to_toml()})

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from fpsolve.cli.command import command_line
+from fpsolve.cli.completion import KINDS, proposing
 from fpsolve.cli.errors import reported_errors
 from fpsolve.cli.potentials import (
     Exponent,
@@ -14,6 +17,7 @@ from fpsolve.cli.potentials import (
     Sigma2,
     Slope,
     make_potential,
+    potential_options,
 )
 from fpsolve.cli.run import NoFigures, Out
 
@@ -24,7 +28,12 @@ __all__ = ["spectrum"]
 
 Kind = Annotated[
     str,
-    typer.Option("--potential", metavar="KIND", help="quadratic, linear or power."),
+    typer.Option(
+        "--potential",
+        metavar="KIND",
+        help="quadratic, linear or power.",
+        autocompletion=proposing(*KINDS),
+    ),
 ]
 Noise = Annotated[float, typer.Option(metavar="A", help="Noise amplitude.")]
 Count = Annotated[int, typer.Option("--count", "-n", min=1, help="How many.")]
@@ -63,31 +72,46 @@ def spectrum(
     and a figure. The gap is the rate at which p/p_S - 1 decays in the end.
     """
     with reported_errors():
+        from fpsolve.io.atomic import check_folder
+
+        check_folder(out, "--out")
+        from fpsolve._checks import check_positive
         from fpsolve.curves import FixedBelt, MovingBelt
+        from fpsolve.io.recipes import recipe
         from fpsolve.models import LayDownModel
         from fpsolve.spectral.spectrum import spectrum as compute
 
         curve = MovingBelt(belt_speed) if belt_speed else FixedBelt()
         chosen = make_potential(potential, sigma1, sigma2, slope, exponent)
         model = LayDownModel(chosen, noise, curve)
-        limit = None if memory_limit is None else int(memory_limit * 2**20)
+        limit = None
+        if memory_limit is not None:
+            limit = math.ceil(check_positive("--memory-limit", memory_limit) * 2**20)
         found = compute(model, count, tolerance=tolerance, memory_limit=limit)
         typer.echo(str(found))
         typer.echo(f"gap {found.gap:.12g} ± {found.gap_error:.1g}")
-        _write(found, out, not no_figures)
+        options: dict[str, Any] = {"n_eigenvalues": count, "tolerance": tolerance}
+        if limit is not None:
+            options["memory_limit"] = limit
+        used = command_line(
+            "spectrum", **potential_options(chosen), noise=noise, count=count,
+            tolerance=tolerance, belt_speed=belt_speed or None,
+            memory_limit=memory_limit,
+        )  # fmt: skip
+        again = {**recipe("spectrum", {"model": model, **options}), **used}
+        _write(found, again, out, not no_figures)
 
 
-def _write(found: Spectrum, out: Path, figure: bool) -> None:
-    from fpsolve.io.atomic import atomic_path
+def _write(found: Spectrum, again: dict[str, str], out: Path, figure: bool) -> None:
+    from fpsolve.io.atomic import atomic_path, made_folder
+    from fpsolve.io.writing import write_dataset
     from fpsolve.plotting.rates import plot_spectrum
     from fpsolve.plotting.style import RESOLUTION, paper_style
     from fpsolve.studies.rates.dataset import spectrum_dataset
 
-    out.mkdir(parents=True, exist_ok=True)
-    numbers = out / "spectrum.nc"
-    with atomic_path(numbers) as draft:
-        spectrum_dataset(found).to_netcdf(draft, engine="h5netcdf")
-    typer.echo(numbers)
+    made_folder(out, "--out")
+    dataset = spectrum_dataset(found).assign_attrs(again)
+    typer.echo(write_dataset(dataset, out / "spectrum.nc"))
     if figure:
         path = out / "spectrum.png"
         with paper_style(), atomic_path(path) as draft:

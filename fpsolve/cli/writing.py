@@ -29,8 +29,9 @@ def write_result(
     A part of a result does not take the place of an older, complete one.
     """
     from fpsolve.io import save
-    from fpsolve.io.atomic import atomic_path
+    from fpsolve.io.atomic import atomic_path, made_folder
 
+    made_folder(out, "--out")
     toml = config.to_toml()
     result = replace(result, provenance={**result.provenance, "configuration": toml})
     show(result)

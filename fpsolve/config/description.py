@@ -91,5 +91,8 @@ def _line(key: str, value: Any) -> str:
 def _literal(value: Any) -> str:
     if isinstance(value, tuple):
         return f"[{', '.join(map(_literal, value))}]"
-    # JSON and TOML differ in infinity only.
-    return repr(value) if isinstance(value, float) else json.dumps(value)
+    if isinstance(value, float):
+        return repr(value)
+    # JSON and TOML differ in infinity, in characters that JSON writes as a pair of
+    # surrogates, and in the one control character that JSON leaves as it is.
+    return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, ClassVar, Literal, TypeAlias
 from pydantic import model_validator
 
 from fpsolve import initial
+from fpsolve._checks import check_tolerance
 from fpsolve.config.sections import Section, one_of, section
 from fpsolve.curves import (
     EllipticNozzle,
@@ -154,6 +155,14 @@ class RunSection(SpanSection):
 
     def _make_schedule(self, ds: float, saves: _Numbers | None) -> None:
         make_schedule((0.0, self.s_end), ds, saves, self.record_every)
+
+    @model_validator(mode="after")
+    def _check_tolerances(self) -> RunSection:
+        for name in ("mass", "boundary", "negative"):
+            value = getattr(self, f"{name}_tolerance")
+            if value is not None:
+                check_tolerance(f"{name}_tolerance", value)
+        return self
 
     def step(self, suggested: float) -> float:
         """Return the largest step, suggested or below, that meets all saving points.

@@ -9,6 +9,7 @@ from typing import Any, TypeVar, overload
 
 from pydantic import ValidationError
 
+from fpsolve._checks import check_path
 from fpsolve.config.complaints import complaints
 from fpsolve.config.description import Description
 from fpsolve.config.run import RunConfig
@@ -45,7 +46,7 @@ def load_config(
         not exist or does not fit. The message names the section, the key, and the
         nearest valid name.
     """
-    path = Path(path)
+    path = check_path("config", path)
     return read_config(_text(path), f"configuration `{path}`", kind=kind)
 
 
@@ -96,7 +97,8 @@ def _text(path: Path) -> str:
             f"`config` must be a TOML file, got the folder `{path}`; name a file in it."
         )
     try:
-        return path.read_text(encoding="utf-8")
+        # Some editors begin a file with a byte order mark.
+        return path.read_text(encoding="utf-8-sig")
     except FileNotFoundError:
         raise ConfigurationError(
             f"`config` must be an existing TOML file, got `{path}`; leave it out to "

@@ -49,8 +49,14 @@ class RunConfig(Description):
     run: RunSection
     output: OutputSection = OutputSection()
 
-    def build(self) -> Problem:
+    def build(self, saved_in_memory: bool = True) -> Problem:
         """Return model, grid, initial density, scheme and the arguments of `solve`.
+
+        Parameters
+        ----------
+        saved_in_memory : bool
+            Count the memory that saved densities take; they take none in a run with
+            checkpoints.
 
         Raises
         ------
@@ -62,7 +68,7 @@ class RunConfig(Description):
         model = self.build_model()
         with named_section("grid"):
             grid = self._grid(model)
-        self._check_memory(grid)
+        self._check_memory(grid, saved_in_memory)
         with named_section("initial"):
             p0 = self.initial.make(grid=grid, potential=model.potential)
         with named_section("scheme"):
@@ -81,15 +87,20 @@ class RunConfig(Description):
         tables = {**self.model_dump(exclude_none=True), "grid": grid, "run": run}
         return RunConfig.model_validate(tables)
 
+    def without_figures(self) -> RunConfig:
+        """Return the configuration with figures switched off."""
+        output = self.output.model_copy(update={"figures": False})
+        return self.model_copy(update={"output": output})
+
     def _grid(self, model: LayDownModel) -> PhaseSpaceGrid:
         if self.grid is None:
             return suggest_grid(model, self.run.tolerance)
         return cast(PhaseSpaceGrid, self.grid.make())
 
-    def _check_memory(self, grid: PhaseSpaceGrid) -> None:
+    def _check_memory(self, grid: PhaseSpaceGrid, saved_in_memory: bool) -> None:
         # `solve` knows how much a scheme needs, but by then the initial density is
         # made already, and tables as large as the grid.
-        n_saved = len(self.run.saves())
+        n_saved = len(self.run.saves()) if saved_in_memory else 0
         check_memory(
             required_memory(grid.nbytes, _FEWEST_ARRAYS, n_saved, self.run.extrapolate)
         )

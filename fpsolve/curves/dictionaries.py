@@ -11,9 +11,9 @@ from fpsolve.curves.curve import Curve
 from fpsolve.curves.nozzles import EllipticNozzle, OscillatingNozzle, RotatingNozzle
 from fpsolve.curves.table import TabulatedCurve
 
-__all__ = ["curve_from_dict"]
+__all__ = ["KINDS", "curve_from_dict"]
 
-_KINDS: dict[str, type[Curve]] = {
+KINDS: dict[str, type[Curve]] = {
     curve.kind: curve
     for curve in (
         FixedBelt,
@@ -41,7 +41,7 @@ def curve_from_dict(description: Mapping[str, Any]) -> Curve:
     """
     parameters = dict(description)
     kind = parameters.pop("kind", None)
-    if kind not in _KINDS:
-        known = ", ".join(repr(name) for name in _KINDS)
+    if kind not in KINDS:
+        known = ", ".join(repr(name) for name in KINDS)
         raise ValueError(f"`kind` of a curve must be one of {known}, got {kind!r}.")
-    return construct(_KINDS[kind], kind, parameters)
+    return construct(KINDS[kind], kind, parameters)

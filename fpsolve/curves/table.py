@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.interpolate import CubicSpline
 
+from fpsolve._arrays import check_numbers
 from fpsolve.curves.curve import Curve, check_speed
+
+if TYPE_CHECKING:
+    from scipy.interpolate import CubicSpline
 
 __all__ = ["TabulatedCurve"]
 
@@ -100,6 +103,8 @@ class TabulatedCurve(Curve):
 
     @cached_property
     def _spline(self) -> CubicSpline:
+        from scipy.interpolate import CubicSpline
+
         points = np.column_stack([self.gamma1, self.gamma2])
         return CubicSpline(self.s, points)
 
@@ -114,7 +119,7 @@ class TabulatedCurve(Curve):
         return np.array(values[..., 0]), np.array(values[..., 1])
 
     def _checked_arclength(self, s: ArrayLike) -> NDArray[np.float64]:
-        arclength = np.asarray(s, dtype=np.float64)
+        arclength = check_numbers("s", s)
         first, last = self.s[0], self.s[-1]
         slack = _ROUNDING * (last - first)
         inside = (arclength >= first - slack) & (arclength <= last + slack)
@@ -128,7 +133,7 @@ class TabulatedCurve(Curve):
 
 
 def _checked_columns(columns: dict[str, ArrayLike]) -> dict[str, NDArray[np.float64]]:
-    arrays = {name: np.asarray(c, dtype=np.float64) for name, c in columns.items()}
+    arrays = {name: check_numbers(name, c) for name, c in columns.items()}
     n = arrays["s"].size
     for name, array in arrays.items():
         if array.shape != (n,) or n < 2:

@@ -11,7 +11,7 @@ from pde.trackers import DataTracker
 from pde.visualization.movies import Movie
 
 from fpsolve import diagnostics
-from fpsolve._checks import check_integer
+from fpsolve._checks import check_integer, check_path, check_positive
 from fpsolve.grids import PhaseSpaceGrid
 from fpsolve.interop.fields import from_pde_field
 from fpsolve.models import LayDownModel
@@ -43,6 +43,10 @@ def relative_entropy(field: Any, model: LayDownModel) -> float:
     TypeError, ValueError
         If the field lives on another kind of grid, see `from_pde_field`, or exp(−B)
         is not integrable.
+
+    References
+    ----------
+    [KMW09]_, equation (11).
     """
     values, grid = from_pde_field(field)
     if isinstance(grid, PhaseSpaceGrid):
@@ -107,7 +111,9 @@ class GifMovie(Movie):  # type: ignore[misc]
         framerate: int = 8,
         dpi: float | None = None,
     ) -> None:
-        name = os.fspath(filename)
+        name = str(check_path("filename", filename))
+        if dpi is not None:
+            dpi = check_positive("dpi", dpi)
         if not name.endswith(".gif"):
             raise ValueError(
                 f"`filename` must end in .gif, got `{name}`; use pde.Movie, which "

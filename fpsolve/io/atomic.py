@@ -9,7 +9,9 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-__all__ = ["atomic_path"]
+from fpsolve._checks import check_path
+
+__all__ = ["atomic_path", "check_folder", "made_folder"]
 
 
 @contextmanager
@@ -32,7 +34,7 @@ def atomic_path(path: str | os.PathLike[str]) -> Iterator[Path]:
     IsADirectoryError
         If a file is to take the place of a folder.
     """
-    target = Path(path)
+    target = check_path("path", path)
     if not target.parent.is_dir():
         raise FileNotFoundError(
             f"`path` must lie in an existing folder, got `{target}`; create "
@@ -51,6 +53,46 @@ def atomic_path(path: str | os.PathLike[str]) -> Iterator[Path]:
         _move(draft, target, aside=staging / "replaced")
     finally:
         shutil.rmtree(staging, ignore_errors=True)
+
+
+def check_folder(path: str | os.PathLike[str], name: str = "directory") -> Path:
+    """Return the path of a folder that is there or can be made.
+
+    Parameters
+    ----------
+    path : str or os.PathLike
+    name : str
+        What messages call it.
+
+    Raises
+    ------
+    NotADirectoryError
+        If it, or what lies above it, is a file.
+    PermissionError
+        If nothing may be written there.
+    """
+    folder = check_path(name, path)
+    nearest = folder
+    while not os.path.lexists(nearest) and nearest != nearest.parent:
+        nearest = nearest.parent
+    if not nearest.is_dir():
+        raise NotADirectoryError(
+            f"`{name}` must be a folder, got `{folder}`: `{nearest}` is none; name "
+            "another one."
+        )
+    if not os.access(nearest, os.W_OK):
+        raise PermissionError(
+            f"`{name}` must be a folder to write to, got `{folder}`: `{nearest}` may "
+            "not be changed; name another one."
+        )
+    return folder
+
+
+def made_folder(path: str | os.PathLike[str], name: str = "directory") -> Path:
+    """Return the path of a folder, made if it was not there; see `check_folder`."""
+    folder = check_folder(path, name)
+    folder.mkdir(parents=True, exist_ok=True)
+    return folder
 
 
 def is_store(path: Path) -> bool:

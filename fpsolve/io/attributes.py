@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import json
 import warnings
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from fpsolve.curves.dictionaries import KINDS as CURVE_KINDS
+from fpsolve.environment import environment
 from fpsolve.models import LayDownModel
+from fpsolve.potentials.dictionaries import KINDS as POTENTIAL_KINDS
+from fpsolve.provenance import versions
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -18,6 +22,7 @@ __all__ = [
     "check_complete",
     "describe_model",
     "labels",
+    "made_with",
     "origin",
     "read_model",
     "to_json",
@@ -59,6 +64,11 @@ def describe_model(
     return {"equation": equation or "", "model": description}
 
 
+def made_with() -> dict[str, str]:
+    """Return the attributes `versions` and `environment` of what is made now."""
+    return {"versions": to_json(versions()), "environment": to_json(environment())}
+
+
 def origin(provenance: Mapping[str, Any]) -> dict[str, Any]:
     """Return the attributes that tell what made the result, and `provenance` whole.
 
@@ -89,9 +99,14 @@ def read_model(
 
     Its description and equation are added to the provenance then.
     """
+    description = json.loads(attributes["model"])
+    if not isinstance(description, Mapping):
+        raise ValueError(f"`model` must describe a model, got {description!r}")
     try:
-        return LayDownModel.from_dict(json.loads(attributes["model"]))
+        return LayDownModel.from_dict(description)
     except ValueError as error:
+        if not _of_a_user(description):
+            raise
         provenance["model_description"] = attributes["model"]
         provenance["equation"] = attributes["equation"]
         warnings.warn(
@@ -100,6 +115,21 @@ def read_model(
             stacklevel=5,
         )
         return None
+
+
+def _of_a_user(description: Mapping[str, Any]) -> bool:
+    """Whether the potential or the curve is of no kind that fpsolve has."""
+    known: dict[str, Collection[str]] = {
+        "potential": POTENTIAL_KINDS,
+        "curve": CURVE_KINDS,
+    }
+    parts = {name: description.get(name) for name in known}
+    return any(
+        isinstance(part, Mapping)
+        and isinstance(part.get("kind"), str)
+        and part["kind"] not in known[name]
+        for name, part in parts.items()
+    )
 
 
 def _plain(value: Any) -> Any:

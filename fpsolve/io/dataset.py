@@ -2,44 +2,84 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import TYPE_CHECKING
+import importlib
+from typing import TYPE_CHECKING, Any
 
-from fpsolve.io import paths, solutions
 from fpsolve.paths import Paths
 from fpsolve.solution import Solution
 
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["FORMAT", "from_xarray", "to_xarray"]
+    from fpsolve.reduced.energy import EnergySolution
+    from fpsolve.reduced.hydrodynamic import HydrodynamicSolution
+
+    Result = Solution | Paths | HydrodynamicSolution | EnergySolution
+
+__all__ = ["FORMAT", "from_xarray", "kind_of", "marked", "to_xarray"]
 
 # Number of these layouts; raised whenever an older version could misread a file.
 FORMAT = 1
-# An older file that does not say what it holds is a solution.
-_READERS: dict[str, Callable[[xr.Dataset], Solution | Paths]] = {
-    "solution": solutions.from_xarray,
-    "paths": paths.from_xarray,
+# What files hold, and the module of fpsolve.io that reads and writes it. An older file
+# that does not say what it holds is a solution.
+_MODULES = {
+    "solution": "solutions",
+    "paths": "paths",
+    "hydrodynamic": "hydrodynamic",
+    "energy": "energy",
 }
 
 
-def to_xarray(result: Solution | Paths) -> xr.Dataset:
+def to_xarray(result: Result) -> xr.Dataset:
     """Return a solution, p(s, ξ1, ξ2, α) with its series, or paths as a dataset.
 
-    The attribute `fpsolve_kind` says which: "solution" or "paths".
+    The attribute `fpsolve_kind` says which: "solution" or "paths", or "hydrodynamic"
+    or "energy" for a solution of a limit.
 
     Parameters
     ----------
-    result : Solution or Paths
+    result : Solution, Paths, HydrodynamicSolution or EnergySolution
+
+    Raises
+    ------
+    TypeError
+        If it is something else.
     """
+    kind = kind_of(result)
+    dataset: xr.Dataset = _module(kind).to_xarray(result)
+    return marked(dataset, kind)
+
+
+def kind_of(result: Any) -> str:
+    """Return what a file of the result would say that it holds."""
+    if isinstance(result, Solution):
+        return "solution"
     if isinstance(result, Paths):
-        kind, dataset = "paths", paths.to_xarray(result)
-    else:
-        kind, dataset = "solution", solutions.to_xarray(result)
+        return "paths"
+    # The limits are not imported for the others.
+    from fpsolve.reduced.energy import EnergySolution
+    from fpsolve.reduced.hydrodynamic import HydrodynamicSolution
+
+    if isinstance(result, HydrodynamicSolution):
+        return "hydrodynamic"
+    if isinstance(result, EnergySolution):
+        return "energy"
+    raise TypeError(
+        "`result` must be a Solution, Paths, a HydrodynamicSolution or an "
+        f"EnergySolution, got {type(result).__name__}."
+    )
+
+
+def _module(kind: str) -> Any:
+    return importlib.import_module(f"fpsolve.io.{_MODULES[kind]}")
+
+
+def marked(dataset: xr.Dataset, kind: str) -> xr.Dataset:
+    """Return the dataset with the attributes that say what it holds."""
     return dataset.assign_attrs(fpsolve_kind=kind, fpsolve_format=FORMAT)
 
 
-def from_xarray(dataset: xr.Dataset) -> Solution | Paths:
+def from_xarray(dataset: xr.Dataset) -> Result:
     """Return the result that `to_xarray` turned into `dataset`.
 
     Arrays come back bit for bit. A model made of a user's own functions cannot be
@@ -65,15 +105,20 @@ def from_xarray(dataset: xr.Dataset) -> Solution | Paths:
         raise ValueError(
             "it is not a result of fpsolve (attribute `fpsolve_format` is missing)"
         )
+    if not str(written).isdecimal():
+        raise ValueError(
+            f"its layout must be a number up to {FORMAT}, got {str(written)!r}"
+        )
     if int(written) > FORMAT:
         raise ValueError(
             f"it has layout {int(written)}, this version of fpsolve reads up to "
             f"{FORMAT}; update fpsolve"
         )
     kind = str(dataset.attrs.get("fpsolve_kind", "solution"))
-    if kind not in _READERS:
+    if kind not in _MODULES:
+        known = ", ".join(map(repr, _MODULES))
         raise ValueError(
-            f"it holds {kind!r}, this version of fpsolve reads "
-            f"{' and '.join(map(repr, _READERS))}; update fpsolve"
+            f"it holds {kind!r}, this version of fpsolve reads {known}; update fpsolve"
         )
-    return _READERS[kind](dataset)
+    found: Result = _module(kind).from_xarray(dataset)
+    return found

@@ -1,21 +1,29 @@
-"""The energy process as labelled `xarray.Dataset`: a solution, and its tables."""
+"""The energy process as labelled `xarray.Dataset`: a solution and back; tables."""
 
 from __future__ import annotations
 
+import json
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from fpsolve._checks import check_integer
-from fpsolve.io.attributes import labels, to_json
-from fpsolve.provenance import versions
+from fpsolve.io.attributes import (
+    check_complete,
+    labels,
+    made_with,
+    origin,
+    to_json,
+)
+from fpsolve.io.recipes import recipe
+from fpsolve.potentials import potential_from_dict
 
 if TYPE_CHECKING:
     import xarray as xr
 
     from fpsolve.reduced.energy import EnergyProcess, EnergySolution
 
-__all__ = ["energy_dataset", "tables_dataset"]
+__all__ = ["from_xarray", "tables_dataset", "to_xarray"]
 
 _SERIES = {
     "mass": "mass ∫ p dg",
@@ -33,10 +41,14 @@ _TABLES = {
     "drift": "drift −A²g/2 per unit of s",
     "stationary_density": "stationary density S/∫S of |G|",
 }
+_NEEDED = ("s", "s_step", "cell_mass")
+_NEEDED_ATTRIBUTES = (
+    "potential", "noise", "n_cells", "signed", "method", "ds", "status", "provenance",
+)  # fmt: skip
 _FAMILIES = ("even", "odd")
 
 
-def energy_dataset(solution: EnergySolution) -> xr.Dataset:
+def to_xarray(solution: EnergySolution) -> xr.Dataset:
     """Densities (s, g), series over s_step, and their estimated errors.
 
     Parameters
@@ -56,6 +68,9 @@ def energy_dataset(solution: EnergySolution) -> xr.Dataset:
         "cell_mass": (("s", "g"), solution.masses, labels("masses of the cells")),
         "stationary_mass": ("g", grid.equilibrium, labels("stationary cell masses")),
     }
+    if solution.initial_masses is not None:
+        meaning = labels("masses of the cells at the start, as given")
+        variables["initial_mass"] = ("g", solution.initial_masses, meaning)
     for name, values in solution.series.items():
         if name != "s":
             variables[name] = ("s_step", values, labels(_SERIES[name]))
@@ -72,12 +87,56 @@ def energy_dataset(solution: EnergySolution) -> xr.Dataset:
     attributes = {
         "title": "law of the energy process of fibre lay-down",
         **_attributes(solution.process),
+        **origin(solution.provenance),
         "n_cells": grid.n_cells,
         "signed": int(grid.signed),
         "method": solution.method,
         "ds": solution.ds,
+        "status": solution.status,
     }
     return xr.Dataset(variables, coordinates, attributes)
+
+
+def from_xarray(dataset: xr.Dataset) -> EnergySolution:
+    """Return the solution that `to_xarray` turned into `dataset`, bit for bit.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+
+    Raises
+    ------
+    ValueError
+        If the dataset does not have the layout of `to_xarray`, or the potential was a
+        user's own code, without which there are no cells.
+    """
+    from fpsolve.reduced.energy import EnergyProcess, EnergySolution
+
+    check_complete(dataset, _NEEDED, _NEEDED_ATTRIBUTES)
+    about = dataset.attrs
+    potential = potential_from_dict(json.loads(about["potential"]))
+    process = EnergyProcess(potential, float(about["noise"]))
+    errors = {
+        str(name).removesuffix("_error"): variable.values
+        for name, variable in dataset.data_vars.items()
+        if str(name).endswith("_error")
+    }
+    series = {name: dataset[name].values for name in _SERIES if name in dataset}
+    return EnergySolution(
+        process=process,
+        grid=process.grid(int(about["n_cells"]), bool(about["signed"])),
+        method=str(about["method"]),
+        ds=float(about["ds"]),
+        series={"s": dataset["s_step"].values, **series},
+        errors=errors or None,
+        saved_s=dataset["s"].values,
+        masses=dataset["cell_mass"].values,
+        provenance=json.loads(about["provenance"]),
+        initial_masses=(
+            dataset["initial_mass"].values if "initial_mass" in dataset else None
+        ),
+        status=str(about["status"]),
+    )
 
 
 def tables_dataset(
@@ -122,7 +181,11 @@ def tables_dataset(
     attributes = {
         "title": "energy process of fibre lay-down",
         **_attributes(process),
-    }
+        **recipe("energy_tables", {
+            "potential": process.potential, "noise": process.noise,
+            "n_energies": n_energies, "n_eigenvalues": n_eigenvalues,
+        }),
+    }  # fmt: skip
     return xr.Dataset(variables, coordinates, attributes)
 
 
@@ -134,5 +197,5 @@ def _attributes(process: EnergyProcess) -> dict[str, Any]:
         "noise": process.noise,
         "radius": process.radius,
         "g_max": process.g_max,
-        "versions": to_json(versions()),
+        **made_with(),
     }

@@ -2,21 +2,36 @@
 
 from __future__ import annotations
 
+import gc
 import os
-from importlib.util import find_spec
+import sys
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from fpsolve._checks import check_path
 from fpsolve.errors import FileFormatError
 from fpsolve.io.atomic import atomic_path
+from fpsolve.io.checksums import stamped, verified
 from fpsolve.io.dataset import from_xarray, to_xarray
-from fpsolve.paths import Paths
+from fpsolve.io.streaming import append_densities, lazy_densities, without_densities
 from fpsolve.solution import Solution
 
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["ENGINES", "check_engine", "load", "save"]
+    from fpsolve.io.dataset import Result
+
+__all__ = [
+    "ENGINES",
+    "check_engine",
+    "load",
+    "read_dataset",
+    "reported_damage",
+    "save",
+]
 
 ENGINES = ("h5netcdf", "zarr")
 
@@ -25,7 +40,7 @@ _SIGNATURE = b"\x89HDF\r\n\x1a\n"
 
 
 def save(
-    result: Solution | Paths, path: str | os.PathLike[str], engine: str | None = None
+    result: Result, path: str | os.PathLike[str], engine: str | None = None
 ) -> Path:
     """Write a result to a file that holds everything needed to repeat the run.
 
@@ -34,7 +49,7 @@ def save(
 
     Parameters
     ----------
-    result : Solution or Paths
+    result : Solution, Paths, HydrodynamicSolution or EnergySolution
     path : str or os.PathLike
         Final place; its folder must exist.
     engine : {"h5netcdf", "zarr"}, optional
@@ -49,25 +64,35 @@ def save(
     ------
     ValueError
         If the engine is unknown.
+    TypeError
+        If it is no result, or the path no path.
     ImportError
         If zarr is asked for and not installed.
     FileNotFoundError, IsADirectoryError
         If the folder does not exist, or the path is a folder of something else.
     """
-    path = Path(path)
+    path = check_path("path", path)
     engine = _engine_of(path) if engine is None else engine
     check_engine(engine)
-    dataset = to_xarray(result)
+    lazy, dataset = None, None
+    if isinstance(result, Solution):
+        lazy = lazy_densities(result)
+        dataset = None if lazy is None else without_densities(result)
+    if dataset is None:
+        dataset = to_xarray(result)
+    dataset = stamped(dataset)
     with atomic_path(path) as draft:
         if engine == "zarr":
             dataset.to_zarr(draft, mode="w", consolidated=False)
         else:
             dataset.to_netcdf(draft, engine="h5netcdf", encoding=_encoding(dataset))
+        if lazy is not None:
+            append_densities(draft, engine, lazy)
     return path
 
 
-def load(path: str | os.PathLike[str]) -> Solution | Paths:
-    """Read what `save` wrote, a solution or paths; arrays come back bit for bit.
+def load(path: str | os.PathLike[str]) -> Any:
+    """Read what `save` wrote, a result of any kind; arrays come back bit for bit.
 
     Parameters
     ----------
@@ -89,34 +114,95 @@ def load(path: str | os.PathLike[str]) -> Solution | Paths:
         If the model was made of a user's own functions; `model` is None then. The
         same holds for a law of the start, `initial`.
     """
-    path = Path(path)
+    dataset = read_dataset(path)
+    with reported_damage(path, Exception):
+        return from_xarray(dataset)
+
+
+def read_dataset(path: str | os.PathLike[str]) -> xr.Dataset:
+    """Read any dataset that fpsolve writes, of a result or of a study.
+
+    Parameters
+    ----------
+    path : str or os.PathLike
+        A netCDF file or a zarr store.
+
+    Raises
+    ------
+    FileNotFoundError, FileFormatError, ImportError
+        As for `load`; what is in the dataset is not looked at.
+    """
+    path = check_path("path", path)
     if not path.exists():
         raise FileNotFoundError(f"`path` must exist to be read, got `{path}`.")
     engine = "zarr" if path.is_dir() else "h5netcdf"
     check_engine(engine)
     if path.is_file() and not _has_signature(path):
-        raise FileFormatError(path, "it is not a netCDF-4 file")
+        raise FileFormatError(
+            path, "it is not a netCDF-4 file; name one that fpsolve wrote"
+        )
+    dataset = _undamaged(path, engine)
+    with reported_damage(path, Exception):
+        return verified(dataset)
+
+
+def _undamaged(path: Path, engine: str) -> xr.Dataset:
+    reason = ""
+    # What libraries warn of in a damaged file the checksums tell, too.
+    with warnings.catch_warnings(), _silent_ends():
+        warnings.simplefilter("ignore")
+        try:
+            return _read(path, engine)
+        # A damaged file makes the libraries below raise whatever they come across.
+        except Exception as error:
+            reason = " ".join(str(error).split()).rstrip(".") or type(error).__name__
+        # Only now nothing refers to the file that was half opened.
+        gc.collect(1)
+    raise FileFormatError(
+        path,
+        f"it is damaged or of another program ({reason}); make it again, or take a "
+        "copy",
+    )
+
+
+@contextmanager
+def _silent_ends() -> Iterator[None]:
+    """Silence what a file that was opened by half says when it is thrown away."""
+    before = sys.unraisablehook
+
+    def hook(unraisable: Any) -> None:
+        if getattr(unraisable.object, "__qualname__", "") != "File.close":
+            before(unraisable)
+
+    sys.unraisablehook = hook
     try:
-        return from_xarray(_read(path, engine))
+        yield
+    finally:
+        sys.unraisablehook = before
+
+
+@contextmanager
+def reported_damage(
+    path: str | os.PathLike[str], *kinds: type[Exception]
+) -> Iterator[None]:
+    """Turn exceptions of these kinds into a `FileFormatError` that names the file."""
+    try:
+        yield
     except UserWarning:
         # Raised by warnings that a caller turned into errors.
         raise
-    # A damaged file makes the libraries below raise whatever they come across.
-    except Exception as error:
-        reason = str(error).rstrip(".") or type(error).__name__
+    except kinds as error:
+        reason = " ".join(str(error).split()).rstrip(".") or type(error).__name__
+        if isinstance(error, KeyError):
+            reason = f"`{error.args[0]}` is missing in it"
         raise FileFormatError(path, reason) from error
 
 
 def check_engine(engine: str) -> None:
-    """Raise unless `engine` is known and installed."""
+    """Raise unless `engine` is known."""
     if engine not in ENGINES:
         known = ", ".join(repr(name) for name in ENGINES)
         raise ValueError(f"`engine` must be one of {known}, got {engine!r}.")
-    if engine == "zarr" and find_spec("zarr") is None:
-        raise ImportError(
-            "the engine 'zarr' needs the package zarr; install it with "
-            "`pip install 'fpsolve[zarr]'`, or save to netCDF."
-        )
 
 
 def _engine_of(path: Path) -> str:

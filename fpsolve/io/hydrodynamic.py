@@ -1,20 +1,28 @@
-"""Solutions of the hydrodynamic limit as labelled `xarray.Dataset`."""
+"""Solutions of the hydrodynamic limit as labelled `xarray.Dataset`, and back."""
 
 from __future__ import annotations
 
+import json
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fpsolve.io.attributes import describe_model, labels, to_json
+from fpsolve.io.attributes import (
+    check_complete,
+    describe_model,
+    labels,
+    origin,
+    read_model,
+    to_json,
+)
 from fpsolve.io.variables import COORDINATES, long_name
+from fpsolve.planes import PlaneGrid
+from fpsolve.reduced.hydrodynamic import HydrodynamicLimit, HydrodynamicSolution
 
 if TYPE_CHECKING:
     import xarray as xr
 
-    from fpsolve.reduced.hydrodynamic import HydrodynamicSolution
-
-__all__ = ["to_xarray"]
+__all__ = ["from_xarray", "to_xarray"]
 
 # Where the limit's quantity differs from that of the full equation.
 _NAMES = {
@@ -24,6 +32,9 @@ _NAMES = {
     "minimum": "smallest value of 𝒫",
     "density_l1_error": "estimated error of: L¹ norm of 𝒫",
 }
+_NEEDED = ("s", "s_step", "density")
+_NEEDED_ATTRIBUTES = ("model", "grid", "method", "ds", "status", "provenance")
+_PLANE = ("xi1", "xi2")
 
 
 def to_xarray(solution: HydrodynamicSolution) -> xr.Dataset:
@@ -35,7 +46,6 @@ def to_xarray(solution: HydrodynamicSolution) -> xr.Dataset:
     """
     import xarray as xr
 
-    model = solution.limit.model
     coordinates = {
         "s": solution.saved_s,
         "s_step": solution.series["s"],
@@ -44,11 +54,14 @@ def to_xarray(solution: HydrodynamicSolution) -> xr.Dataset:
     }
     variables: dict[str, Any] = {
         "density": (
-            ("s", "xi1", "xi2"),
+            ("s", *_PLANE),
             solution.densities,
             labels("plane density 𝒫(s, ξ₁, ξ₂) of the hydrodynamic limit"),
         )
     }
+    if solution.initial_density is not None:
+        meaning = labels("plane density 𝒫₀ of the start")
+        variables["initial_density"] = (_PLANE, solution.initial_density, meaning)
     for name, values in solution.series.items():
         if name != "s":
             variables[name] = _labelled(name, "s_step", values)
@@ -61,18 +74,79 @@ def to_xarray(solution: HydrodynamicSolution) -> xr.Dataset:
             name: (name, values, labels(COORDINATES[name]))
             for name, values in coordinates.items()
         },
-        attrs={
-            "title": "hydrodynamic limit of fibre lay-down",
-            **describe_model(model, model.equation, solution.provenance),
-            "grid": to_json(solution.grid.to_dict()),
-            "method": solution.method,
-            "ds": solution.ds,
-            "provenance": to_json(solution.provenance),
-        },
+        attrs=_attributes(solution),
     )
+
+
+def from_xarray(dataset: xr.Dataset) -> HydrodynamicSolution:
+    """Return the solution that `to_xarray` turned into `dataset`, bit for bit.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+
+    Raises
+    ------
+    ValueError
+        If the dataset does not have the layout of `to_xarray`.
+
+    Warns
+    -----
+    UserWarning
+        If the model was made of a user's own functions; `limit` is None then.
+    """
+    check_complete(dataset, _NEEDED, _NEEDED_ATTRIBUTES)
+    attributes = dataset.attrs
+    provenance = json.loads(attributes["provenance"])
+    model = read_model(attributes, provenance)
+    start = dataset["initial_density"].values if "initial_density" in dataset else None
+    return HydrodynamicSolution(
+        limit=None if model is None else HydrodynamicLimit(model),
+        grid=PlaneGrid.from_dict(json.loads(attributes["grid"])),
+        method=str(attributes["method"]),
+        ds=float(attributes["ds"]),
+        series=_read_series(dataset),
+        saved_s=dataset["s"].values,
+        densities=dataset["density"].values,
+        errors=_read_errors(dataset) or None,
+        provenance=provenance,
+        initial_density=start,
+        status=str(attributes["status"]),
+    )
+
+
+def _attributes(solution: HydrodynamicSolution) -> dict[str, Any]:
+    # Files may come without a model.
+    model = None if solution.limit is None else solution.limit.model
+    equation = None if model is None else model.equation
+    return {
+        "title": "hydrodynamic limit of fibre lay-down",
+        **describe_model(model, equation, solution.provenance),
+        "grid": to_json(solution.grid.to_dict()),
+        "method": solution.method,
+        "ds": solution.ds,
+        "status": solution.status,
+        **origin(solution.provenance),
+    }
 
 
 def _labelled(
     name: str, dimension: str, values: np.ndarray
 ) -> tuple[str, np.ndarray, dict[str, str]]:
     return dimension, values, labels(_NAMES.get(name) or long_name(name))
+
+
+def _read_series(dataset: xr.Dataset) -> dict[str, Any]:
+    series = {"s": dataset["s_step"].values}
+    for name, variable in dataset.data_vars.items():
+        if variable.dims == ("s_step",) and not str(name).endswith("_error"):
+            series[str(name)] = variable.values
+    return series
+
+
+def _read_errors(dataset: xr.Dataset) -> dict[str, Any]:
+    return {
+        str(name).removesuffix("_error"): variable.values
+        for name, variable in dataset.data_vars.items()
+        if str(name).endswith("_error")
+    }

@@ -18,12 +18,20 @@ from fpsolve.potentials import potential_from_dict
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["describe_law", "law_variables", "read_law"]
+__all__ = [
+    "FORMULAS",
+    "describe_law",
+    "law_from_formula",
+    "law_variables",
+    "read_law",
+]
 
 # Stands in `provenance` for a law that cannot be read back.
 _UNREADABLE = "initial_description"
 _DENSITY = ("initial_xi1", "initial_xi2", "initial_alpha")
-_KNOWN = (PointLaw, GaussianLaw, EquilibriumLaw, DensityLaw, GivenStart)
+# Laws that are a formula, so that a dictionary holds them whole.
+FORMULAS = (PointLaw, GaussianLaw, EquilibriumLaw)
+_KNOWN = (*FORMULAS, DensityLaw, GivenStart)
 
 
 def describe_law(law: Any, provenance: Mapping[str, Any]) -> dict[str, Any]:
@@ -76,6 +84,19 @@ def _law(parameters: dict[str, Any], dataset: xr.Dataset) -> Any:
     if kind == "density":
         grid = PhaseSpaceGrid.from_dict(parameters["grid"])
         return DensityLaw(grid, dataset["initial_density"].values)
+    return law_from_formula({"kind": kind, **parameters})
+
+
+def law_from_formula(description: Mapping[str, Any]) -> Any:
+    """Return the law of `FORMULAS` that its `to_dict` described.
+
+    Raises
+    ------
+    ValueError
+        If it is another one.
+    """
+    parameters = dict(description)
+    kind = parameters.pop("kind")
     if kind == "equilibrium":
         return EquilibriumLaw(potential_from_dict(parameters["potential"]))
     if kind == "point":

@@ -5,6 +5,8 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from fpsolve.grids import PhaseSpaceGrid
 from fpsolve.io.attributes import (
     check_complete,
@@ -14,7 +16,8 @@ from fpsolve.io.attributes import (
     read_model,
     to_json,
 )
-from fpsolve.io.variables import COORDINATES, DENSITY, long_name
+from fpsolve.io.layout import check_solution_layout
+from fpsolve.io.variables import COORDINATES, DENSITY, START, long_name
 from fpsolve.solution import Solution
 
 if TYPE_CHECKING:
@@ -36,18 +39,22 @@ _NEEDED_ATTRIBUTES = (
 )
 
 
-def to_xarray(solution: Solution) -> xr.Dataset:
+def to_xarray(solution: Solution, densities: Any = None) -> xr.Dataset:
     """p(s, ξ1, ξ2, α) and every series as one labelled dataset.
 
     The densities share memory with the solution. Dimensions: `s` (saved densities),
     `xi1`, `xi2`, `alpha`, and `step` (recorded steps, with the coordinate `s_step`).
     Error estimates, when there are any, are variables that end in `_error`. The
-    attributes hold what is needed to repeat the run: equation, model, grid and scheme
-    (as JSON), `ds`, status, versions and date.
+    attributes hold equation, model, grid and scheme (as JSON), `ds`, status, versions
+    and date; `provenance` holds the arguments of the run. `initial_density` is there
+    unless it is among the saved densities, `reference_density` if one was given: with
+    them the run can be repeated.
 
     Parameters
     ----------
     solution : Solution
+    densities : array_like, optional
+        Stands in for the densities.
 
     Returns
     -------
@@ -55,14 +62,18 @@ def to_xarray(solution: Solution) -> xr.Dataset:
     """
     import xarray as xr
 
+    if densities is None:
+        densities = np.asarray(solution.densities)
     variables: dict[str, Any] = {
-        "density": (("s", *_AXES), solution.densities, labels(DENSITY)),
+        "density": (("s", *_AXES), densities, labels(DENSITY)),
         "entropy_floor": (
             (),
             solution.entropy_floor,
             labels("value that H(p|p_S) tends to on this grid"),
         ),
     }
+    for name, start in _start(solution).items():
+        variables[name] = (_AXES[: start.ndim], start, labels(START[name]))
     for name, values in solution.series.items():
         if name != "s":
             variables[name] = ("step", values, labels(long_name(name)))
@@ -99,10 +110,13 @@ def from_xarray(dataset: xr.Dataset) -> Solution:
     provenance = json.loads(attributes["provenance"])
     model = read_model(attributes, provenance)
     errors = _read_errors(dataset)
+    grid = PhaseSpaceGrid.from_dict(json.loads(attributes["grid"]))
+    scheme = json.loads(attributes["scheme"])
+    check_solution_layout(dataset, grid, scheme)
     return Solution(
         model=model,
-        grid=PhaseSpaceGrid.from_dict(json.loads(attributes["grid"])),
-        scheme=json.loads(attributes["scheme"]),
+        grid=grid,
+        scheme=scheme,
         ds=float(attributes["ds"]),
         series=_read_series(dataset),
         saved_s=dataset["s"].values,
@@ -112,7 +126,41 @@ def from_xarray(dataset: xr.Dataset) -> Solution:
         message=str(attributes["message"]),
         errors=errors or None,
         provenance=provenance,
+        **_read_start(dataset),
     )
+
+
+def _start(solution: Solution) -> dict[str, Any]:
+    """Return what the run began with, unless it is among the saved densities."""
+    p0, found = solution.initial_density, {}
+    if p0 is not None and not _is_saved(p0, solution):
+        found["initial_density"] = p0
+    if solution.reference is not None:
+        found["reference_density"] = np.asarray(solution.reference)
+    return found
+
+
+def _is_saved(p0: Any, solution: Solution) -> bool:
+    saved = _saves_start(solution.saved_s, solution.series["s"])
+    return saved and np.array_equal(solution.densities[0], p0)
+
+
+def _saves_start(saved_s: Any, s: Any) -> bool:
+    return bool(saved_s.size and s.size and saved_s[0] == s[0])
+
+
+def _read_start(dataset: xr.Dataset) -> dict[str, Any]:
+    p0 = reference = None
+    if "initial_density" in dataset:
+        p0 = dataset["initial_density"].values
+    # Of an older file it is not known whether the first density was the initial one.
+    elif "run" in json.loads(dataset.attrs["provenance"]) and _saves_start(
+        dataset["s"].values, dataset["s_step"].values
+    ):
+        p0 = dataset["density"].values[0]
+    if "reference_density" in dataset:
+        reference = dataset["reference_density"].values
+    return {"initial_density": p0, "reference": reference}
 
 
 def _coordinates(solution: Solution) -> dict[str, Any]:

@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
-__all__ = ["COORDINATES", "DENSITY", "SERIES", "long_name"]
+__all__ = ["COORDINATES", "DENSITY", "SERIES", "START", "long_name"]
 
 DENSITY = "probability density p(s, ξ₁, ξ₂, α)"
+
+START = {
+    "initial_density": "initial density p₀(ξ₁, ξ₂, α)",
+    "reference_density": "density that the entropy is relative to",
+}
 
 COORDINATES = {
     "s": "arclength s of the saved densities",

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from fpsolve._arrays import check_numbers
+from fpsolve._checks import check_call
 from fpsolve.paths.ensemble import angle_of
 from fpsolve.paths.trajectory import traced
 
@@ -31,14 +33,16 @@ def observed(f: Observable, xi1: Array, xi2: Array, alpha: Array) -> Array:
     ValueError
         If f does not work elementwise or gives NaN or infinity.
     """
-    values = np.asarray(f(xi1, xi2, alpha), dtype=np.float64)
+    check_call("f", f, "f(xi1, xi2, alpha)")
+    values = check_numbers("f", f(xi1, xi2, alpha))
     if values.shape not in ((), xi1.shape):
         raise ValueError(
             f"`f` must work elementwise, got shape {values.shape} for arguments of "
             f"shape {xi1.shape}."
         )
     if not np.isfinite(values).all():
-        bad = tuple(np.argwhere(~np.isfinite(np.broadcast_to(values, xi1.shape)))[0])
+        values = np.broadcast_to(values, xi1.shape)
+        bad = tuple(np.argwhere(~np.isfinite(values))[0])
         raise ValueError(
             f"`f` must be finite on the paths, got {values[bad]:g} at xi = "
             f"({xi1[bad]:g}, {xi2[bad]:g}), alpha = {alpha[bad]:g}."

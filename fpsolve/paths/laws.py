@@ -8,8 +8,8 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from fpsolve._checks import check_finite, check_non_negative
-from fpsolve.grids import PhaseSpaceGrid
+from fpsolve._checks import check_finite, check_kind, check_non_negative, check_pair
+from fpsolve.grids import PhaseSpaceGrid, check_grid
 from fpsolve.initial import checked_covariance
 from fpsolve.paths.gibbs import GibbsSampler
 from fpsolve.paths.interpolated import InterpolatedDensity
@@ -50,7 +50,7 @@ class PointLaw:
     alpha: float | None = None
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "xi", _checked_point("xi", self.xi))
+        object.__setattr__(self, "xi", check_pair("xi", self.xi))
         if self.alpha is not None:
             object.__setattr__(self, "alpha", check_finite("alpha", self.alpha))
 
@@ -95,7 +95,7 @@ class GaussianLaw:
     concentration: float = 0.0
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "mean", _checked_point("mean", self.mean))
+        object.__setattr__(self, "mean", check_pair("mean", self.mean))
         covariance = checked_covariance(self.variance)
         as_tuples = tuple(tuple(row) for row in covariance.tolist())
         object.__setattr__(self, "variance", as_tuples)
@@ -156,6 +156,7 @@ class EquilibriumLaw:
     _sampler: GibbsSampler = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
+        check_kind("potential", self.potential, Potential)
         object.__setattr__(self, "_sampler", GibbsSampler(self.potential))
 
     def sample(self, rng: np.random.Generator, n: int) -> Sample:
@@ -193,7 +194,8 @@ class DensityLaw:
     _sampler: InterpolatedDensity = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
-        p = self.grid.check(np.asarray(self.p), "p")
+        check_grid(self.grid)
+        p = self.grid.check(self.p, "p")
         object.__setattr__(self, "p", p)
         object.__setattr__(self, "_sampler", InterpolatedDensity(self.grid, p))
 
@@ -204,10 +206,3 @@ class DensityLaw:
     def to_dict(self) -> dict[str, Any]:
         """Return a description; the density itself is not in it."""
         return {"kind": "density", "grid": self.grid.to_dict()}
-
-
-def _checked_point(name: str, point: Any) -> tuple[float, float]:
-    if np.shape(point) != (2,):
-        raise ValueError(f"`{name}` must be two numbers, got {point!r}.")
-    first, second = (check_finite(name, component) for component in point)
-    return first, second

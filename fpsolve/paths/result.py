@@ -6,13 +6,13 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve._checks import check_integer
-from fpsolve.grids import PhaseSpaceGrid
+from fpsolve._checks import check_integer, check_real
+from fpsolve.grids import PhaseSpaceGrid, check_grid
 from fpsolve.models import LayDownModel
 from fpsolve.paths.averages import Observable, observed, time_averages
 from fpsolve.paths.ensemble import Ensemble, angle_of
@@ -182,6 +182,8 @@ class Paths:
             nor a position.
         """
         at = self._index(s)
+        if grid is not None:
+            check_grid(grid)
         known = self.ensemble.grid
         if known is not None and (grid is None or grid == known):
             counts, outside, grid = self.counts[at], int(self.outside[at]), known
@@ -219,10 +221,10 @@ class Paths:
             With a leading axis for a sequence. NaN at the start itself, where there is
             nothing to average.
         """
-        if callable(f):
-            alone: Array = time_averages(self, [f])[0]
-            return alone
-        return time_averages(self, list(f))
+        if isinstance(f, tuple | list):
+            return time_averages(self, f)
+        alone: Array = time_averages(self, [cast(Observable, f)])[0]
+        return alone
 
     def replay(self, k: int, every: int = 1) -> Trajectory:
         """Path k from its start to the end, at every step or every few.
@@ -300,9 +302,9 @@ class Paths:
         """Index of a saved s."""
         if s is None and len(self.s):
             return len(self.s) - 1
-        wanted = np.nan if s is None else float(s)
+        wanted = np.nan if s is None else check_real("s", s)
         for index, saved in enumerate(self.s):
-            if abs(saved - wanted) <= 1e-9 * max(1.0, abs(wanted)):
+            if abs(saved - wanted) <= 1e-9 * max(1.0, abs(saved)):
                 return index
         known = ", ".join(f"{value:g}" for value in self.s) or "none"
         raise ValueError(

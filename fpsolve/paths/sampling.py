@@ -12,11 +12,18 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve._checks import check_integer
+from fpsolve._arrays import check_numbers
+from fpsolve._checks import (
+    check_flag,
+    check_integer,
+    check_one_of,
+    check_real,
+    shown,
+)
 from fpsolve.errors import GridMismatchError, NonFinitePathError, RunInterrupted
-from fpsolve.grids import PhaseSpaceGrid
+from fpsolve.grids import PhaseSpaceGrid, check_grid
 from fpsolve.memory import OVERHEAD, check_memory
-from fpsolve.models import LayDownModel
+from fpsolve.models import LayDownModel, check_model
 from fpsolve.paths.batch import Batch, BatchRun, batches_of, run_batch
 from fpsolve.paths.ensemble import Ensemble, GivenStart
 from fpsolve.paths.integrators import METHODS
@@ -110,8 +117,9 @@ def sample_paths(
     ----------
     [KMW09]_, section 3.1, equation (6).
     """
+    check_model(model)
     n_paths = check_integer("n_paths", n_paths, 1)
-    check_method(method)
+    check_one_of("method", method, METHODS)
     check_histogram(histogram)
     schedule = stepwise(s_start, s_end, ds, save_at)
     ensemble = Ensemble(
@@ -121,7 +129,7 @@ def sample_paths(
         seed=seed_number(seed, rng),
         method=method,
         law=law_of(initial, n_paths),
-        keep=bool(keep),
+        keep=check_flag("keep", keep),
         grid=histogram,
     )
     remedy = "pass keep=False to keep no positions, save less often"
@@ -141,6 +149,7 @@ def go_on(
     paths.check_model()
     before = paths.ensemble.schedule
     reached = before.s(before.n_steps)
+    s_end = check_real("s_end", s_end)
     if not s_end > reached:
         raise ValueError(
             f"`s_end` must be beyond the end {reached:g} of the paths, got {s_end:g}."
@@ -274,7 +283,14 @@ def finished_part(
     saves = ensemble.schedule.saves[: len(batches[0].sums)]
     schedule = replace(ensemble.schedule, n_steps=reached, saves=saves)
     fewer = replace(ensemble, n_paths=n_paths, schedule=schedule)
-    provenance = watch.provenance(n_paths * (reached - ensemble.first_step))
+    asked = ensemble.schedule
+    provenance = {
+        **watch.provenance(n_paths * (reached - ensemble.first_step)),
+        "asked": {
+            "n_paths": ensemble.n_paths, "n_steps": asked.n_steps,
+            "saves": list(asked.saves),
+        },
+    }  # fmt: skip
     return replace(
         gathered(fewer, batches, provenance), status="interrupted", message=message
     )
@@ -302,21 +318,15 @@ def stepwise(
     s_start: float, s_end: float, ds: float, save_at: Iterable[float] | None
 ) -> Schedule:
     """Steps of exactly ds, whatever the end: a path must not depend on it."""
-    schedule = make_schedule((s_start, s_end), ds, save_at, record_every=sys.maxsize)
+    span = check_real("s_start", s_start), check_real("s_end", s_end)
+    schedule = make_schedule(span, ds, save_at, record_every=sys.maxsize)
     return replace(schedule, ds=float(ds), records=())
-
-
-def check_method(method: str) -> None:
-    """Raise ValueError unless the method is known."""
-    if method not in METHODS:
-        known = ", ".join(repr(name) for name in METHODS)
-        raise ValueError(f"`method` must be one of {known}, got {method!r}.")
 
 
 def check_histogram(grid: Any) -> None:
     """Raise TypeError unless it is a grid or nothing."""
-    if not (grid is None or isinstance(grid, PhaseSpaceGrid)):
-        raise TypeError(f"`histogram` must be a PhaseSpaceGrid, got {grid!r}.")
+    if grid is not None:
+        check_grid(grid, "histogram")
 
 
 def law_of(initial: Any, n_paths: int) -> Any:
@@ -328,9 +338,9 @@ def law_of(initial: Any, n_paths: int) -> Any:
     if not (isinstance(initial, tuple | list) and len(initial) == 2):
         raise TypeError(
             "`initial` must be a law with a method sample(rng, n), or a pair "
-            f"(xi, alpha), got {initial!r}."
+            f"(xi, alpha), got {shown(initial)}."
         )
-    xi, alpha = (np.asarray(points, dtype=np.float64) for points in initial)
+    xi, alpha = (check_numbers("initial", points) for points in initial)
     if xi.shape not in ((2,), (n_paths, 2)):
         raise GridMismatchError((n_paths, 2), xi.shape, "initial xi")
     if alpha.shape not in ((), (n_paths,)):

@@ -24,6 +24,7 @@ from fpsolve.plotting.trajectories import (
 
 if TYPE_CHECKING:
     from fpsolve.plotting.comparison import plot_cross_check
+    from fpsolve.plotting.differences import plot_comparison
     from fpsolve.plotting.energy import (
         plot_energy_coefficients,
         plot_energy_eigenfunctions,
@@ -47,6 +48,7 @@ __all__ = [
     "movie",
     "plot_angle",
     "plot_asymptotic_variance",
+    "plot_comparison",
     "plot_cross_check",
     "plot_energy_coefficients",
     "plot_energy_eigenfunctions",
@@ -73,6 +75,7 @@ __all__ = [
 # Figures of studies, which are loaded on first use.
 _STUDIES = {
     "plot_asymptotic_variance": "fpsolve.plotting.rates",
+    "plot_comparison": "fpsolve.plotting.differences",
     "plot_cross_check": "fpsolve.plotting.comparison",
     "plot_energy_coefficients": "fpsolve.plotting.energy",
     "plot_energy_eigenfunctions": "fpsolve.plotting.energy",

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fpsolve.plotting.selection import select_s
+from fpsolve.plotting.selection import check_solution, select_s
 from fpsolve.plotting.style import (
     COLOURS,
     COLUMN,
@@ -46,6 +46,7 @@ def plot_angle(solution: Solution, at: Iterable[float] | None = None) -> Figure:
     ValueError
         If no density was saved, or none at one of the arclengths.
     """
+    check_solution(solution)
     with paper_style():
         figure = new_figure(COLUMN, 2.6)
         axes = figure.subplots()

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 from numpy.typing import NDArray
 
+from fpsolve._checks import check_kind
 from fpsolve.plotting.style import (
     COLOURS,
     PAGE,
@@ -60,6 +61,7 @@ def plot_cross_check(check: CrossCheck, at: Iterable[float] | None = None) -> Fi
     ValueError
         If one of the arclengths was not compared.
     """
+    check_kind("check", check, CrossCheck, "it is what `cross_check` returns")
     rows = _rows(check, at)
     with paper_style():
         figure = new_figure(PAGE, _MARGINS + len(rows) * (_ROW + _STRIP))

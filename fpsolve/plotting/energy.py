@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from fpsolve.plotting.selection import check_energy_solution, check_process
 from fpsolve.plotting.style import (
     COLOURS,
     DENSITY_MAP,
@@ -51,7 +52,12 @@ def plot_orbits(process: EnergyProcess) -> Figure:
     Returns
     -------
     matplotlib.figure.Figure
+
+    References
+    ----------
+    [KMW09]_, figure 6.
     """
+    check_process(process)
     with paper_style():
         figure = new_figure(PAGE, 3.5)
         left, right = figure.subplots(1, 2, width_ratios=(1.15, 1.0))
@@ -72,6 +78,7 @@ def plot_energy_coefficients(process: EnergyProcess) -> Figure:
     -------
     matplotlib.figure.Figure
     """
+    check_process(process)
     # A sequence that crowds at both ends, where the curves are steep.
     g = process.g_max * np.sin(np.linspace(0, np.pi / 2, 301)) ** 2
     with paper_style():
@@ -112,6 +119,7 @@ def plot_energy_law(solution: EnergySolution) -> Figure:
     -------
     matplotlib.figure.Figure
     """
+    check_energy_solution(solution)
     with paper_style():
         figure = new_figure(PAGE, 3.0)
         law, entropy = figure.subplots(1, 2, width_ratios=(1.6, 1.0))
@@ -134,6 +142,7 @@ def plot_energy_eigenfunctions(process: EnergyProcess, n: int = 4) -> Figure:
     -------
     matplotlib.figure.Figure
     """
+    check_process(process)
     if not 1 <= n <= len(_SEQUENCE):
         raise ValueError(f"`n` must be from 1 to {len(_SEQUENCE)}, got {n}.")
     g = process.g_max * np.sin(np.linspace(0, np.pi / 2, 301)) ** 2

@@ -17,6 +17,7 @@ from fpsolve.plotting.maps import (
     visible_region,
 )
 from fpsolve.plotting.moments import PANELS, draw_moments
+from fpsolve.plotting.selection import check_paths
 from fpsolve.plotting.style import (
     COLOURS,
     PAGE,
@@ -64,6 +65,7 @@ def plot_ensemble(paths: Paths, s: float | None = None) -> Figure:
     ValueError
         If nothing was saved at `s`.
     """
+    check_paths(paths)
     histogram = _histogram(paths, s)
     with paper_style():
         if histogram is None:

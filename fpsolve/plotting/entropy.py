@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fpsolve.decay import NOISE_LEVEL, DecayRate
+from fpsolve.plotting.selection import check_solution
 from fpsolve.plotting.style import (
     COLOURS,
     COLUMN,
@@ -48,6 +49,7 @@ def plot_entropy(solution: Solution) -> Figure:
     ValueError
         If there is no relative entropy, because exp(-B) is not normalisable.
     """
+    check_solution(solution)
     if not has_entropy(solution):
         raise ValueError(
             "`solution` must have a relative entropy to show, got none; exp(-B) has to "

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fpsolve.plotting.selection import check_dataset
 from fpsolve.plotting.style import COLOURS, PAGE, new_figure, paper_style
 from fpsolve.studies.ergodic_fit import ErgodicFit, ErrorShape, fit_ergodic_error
 
@@ -65,6 +66,7 @@ def plot_ergodic_averages(
     ValueError
         If the function or a noise is not in the dataset.
     """
+    check_dataset("dataset", dataset)
     known = [str(name) for name in dataset["function"].to_numpy()]
     if function not in known:
         raise ValueError(

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from fpsolve.io.atomic import atomic_path
+from fpsolve.io.atomic import atomic_path, made_folder
 from fpsolve.paths import Paths
 from fpsolve.plotting.angle import plot_angle
 from fpsolve.plotting.ensembles import plot_ensemble
@@ -15,6 +15,7 @@ from fpsolve.plotting.entropy import has_entropy, plot_entropy
 from fpsolve.plotting.marginals import plot_marginals
 from fpsolve.plotting.moments import plot_moments
 from fpsolve.plotting.overview import plot_overview
+from fpsolve.plotting.selection import check_solution
 from fpsolve.plotting.style import RESOLUTION, paper_style
 from fpsolve.plotting.trajectories import plot_fibre, plot_trajectories
 from fpsolve.solution import Solution
@@ -22,7 +23,7 @@ from fpsolve.solution import Solution
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["save_figures"]
+__all__ = ["possible_figures", "save_figures"]
 
 
 def save_figures(
@@ -47,15 +48,17 @@ def save_figures(
         paths `ensemble.png`, and if their starts were kept one path: `fibre.png`, or
         `trajectory.png` on a belt at rest.
     """
-    directory = Path(directory)
-    directory.mkdir(parents=True, exist_ok=True)
+    if not isinstance(result, Paths):
+        check_solution(result)
+    directory = made_folder(directory)
     return [
         _write(plot(result), directory / f"{prefix}{name}.png")
-        for name, plot in _possible_figures(result).items()
+        for name, plot in possible_figures(result).items()
     ]
 
 
-def _possible_figures(result: Solution | Paths) -> dict[str, Callable[[Any], Figure]]:
+def possible_figures(result: Solution | Paths) -> dict[str, Callable[[Any], Figure]]:
+    """Names of the figures that the result allows, with what draws them."""
     if isinstance(result, Paths):
         return _figures_of_paths(result)
     return _figures_of_solution(result)

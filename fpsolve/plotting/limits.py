@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fpsolve.plotting.selection import check_dataset
 from fpsolve.plotting.style import COLOURS, PAGE, new_figure, paper_style
 
 if TYPE_CHECKING:
@@ -62,6 +63,7 @@ def plot_large_noise(dataset: xr.Dataset) -> Figure:
     -------
     matplotlib.figure.Figure
     """
+    check_dataset("dataset", dataset)
     if "expected_order" not in dataset or "epsilon" not in dataset.coords:
         raise ValueError(
             "`dataset` must come from `large_noise_limit`, got one without "

@@ -16,7 +16,7 @@ from fpsolve.plotting.maps import (
     show_region,
     visible_region,
 )
-from fpsolve.plotting.selection import select_s
+from fpsolve.plotting.selection import check_solution, select_s
 from fpsolve.plotting.style import (
     COLUMN,
     PAGE,
@@ -56,6 +56,7 @@ def plot_marginals(solution: Solution, at: Iterable[float] | None = None) -> Fig
     ValueError
         If no density was saved, or none at one of the arclengths.
     """
+    check_solution(solution)
     chosen = select_s(solution, at, _MOST_MAPS)
     maps = [solution.marginal("xi", s) for s in chosen]
     n_rows, n_columns = _layout(len(maps))

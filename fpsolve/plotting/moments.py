@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
+from fpsolve.plotting.selection import check_solution
 from fpsolve.plotting.style import (
     COLOURS,
     PAGE,
@@ -63,6 +64,7 @@ def plot_moments(solution: Solution) -> Figure:
     -------
     matplotlib.figure.Figure
     """
+    check_solution(solution)
     with paper_style():
         figure = new_figure(PAGE, 2.6)
         panels = figure.subplots(1, len(PANELS))

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from fpsolve._checks import check_path, check_real
 from fpsolve.io.atomic import atomic_path
 from fpsolve.plotting.entropy import draw_entropy, has_entropy
 from fpsolve.plotting.maps import (
@@ -18,6 +19,7 @@ from fpsolve.plotting.maps import (
     visible_region,
 )
 from fpsolve.plotting.moments import draw_moments
+from fpsolve.plotting.selection import check_solution
 from fpsolve.plotting.style import (
     COLOURS,
     PAGE,
@@ -30,10 +32,11 @@ from fpsolve.solution import Solution
 if TYPE_CHECKING:
     from matplotlib.animation import AbstractMovieWriter
 
-__all__ = ["movie"]
+__all__ = ["check_movie", "movie"]
 
 _SUFFIXES = (".gif", ".mp4")
 _RESOLUTION = 120
+_FASTEST = 100
 
 
 def movie(
@@ -61,13 +64,7 @@ def movie(
         If fewer than two densities were saved, the suffix is unknown, ffmpeg is
         missing, or `fps` is not positive.
     """
-    path = Path(path)
-    writer = _writer(path, fps)
-    if len(solution.saved_s) < 2:
-        raise ValueError(
-            "`solution` must hold at least two saved densities for a movie, got "
-            f"{len(solution.saved_s)}; name more arclengths in `save_at` of the run."
-        )
+    path, writer = check_movie(solution, path, fps)
     with paper_style(), atomic_path(path) as draft:
         figure, show = _stage(solution)
         with writer.saving(figure, str(draft), _RESOLUTION):
@@ -77,11 +74,32 @@ def movie(
     return path
 
 
+def check_movie(
+    solution: Solution, path: str | os.PathLike[str], fps: float
+) -> tuple[Path, AbstractMovieWriter]:
+    """Return the path and what writes to it; raise what `movie` does."""
+    check_solution(solution)
+    path = check_path("path", path)
+    writer = _writer(path, fps)
+    if len(solution.saved_s) < 2:
+        raise ValueError(
+            "`solution` must hold at least two saved densities for a movie, got "
+            f"{len(solution.saved_s)}; name more arclengths in `save_at` of the run."
+        )
+    return path, writer
+
+
 def _writer(path: Path, fps: float) -> AbstractMovieWriter:
     from matplotlib.animation import FFMpegWriter, PillowWriter
 
+    fps = check_real("fps", fps)
     if not (np.isfinite(fps) and fps > 0):
         raise ValueError(f"`fps` must be positive, got {fps:g}.")
+    if not fps <= _FASTEST:
+        raise ValueError(
+            f"`fps` must be at most {_FASTEST}, got {fps:g}; a GIF counts hundredths "
+            "of a second."
+        )
     if path.suffix not in _SUFFIXES:
         known = " or ".join(_SUFFIXES)
         raise ValueError(f"`path` of a movie must end in {known}, got `{path.name}`.")

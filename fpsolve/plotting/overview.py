@@ -14,7 +14,7 @@ from fpsolve.plotting.maps import (
     visible_region,
 )
 from fpsolve.plotting.moments import draw_moments
-from fpsolve.plotting.selection import select_s
+from fpsolve.plotting.selection import check_solution, select_s
 from fpsolve.plotting.style import PAGE, new_figure, paper_style, parameters
 from fpsolve.solution import Solution
 
@@ -42,6 +42,7 @@ def plot_overview(solution: Solution) -> Figure:
     ValueError
         If no density was saved.
     """
+    check_solution(solution)
     chosen = select_s(solution, None, _N_MAPS)
     with paper_style():
         figure = new_figure(PAGE, 4.6)

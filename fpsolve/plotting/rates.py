@@ -8,6 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fpsolve.plotting.ergodicity import _symbol
+from fpsolve.plotting.selection import (
+    check_dataset,
+    check_datasets,
+    check_spectrum,
+)
 from fpsolve.plotting.style import COLOURS, COLUMN, PAGE, new_figure, paper_style
 
 if TYPE_CHECKING:
@@ -15,6 +20,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from fpsolve.report.spectrum import StoredSpectrum
     from fpsolve.spectral.spectrum import Spectrum
 
 __all__ = [
@@ -44,10 +50,12 @@ def plot_inverse_decay_rate(datasets: xr.Dataset | Iterable[xr.Dataset]) -> Figu
     Returns
     -------
     matplotlib.figure.Figure
-    """
-    import xarray as xr
 
-    listed = [datasets] if isinstance(datasets, xr.Dataset) else list(datasets)
+    References
+    ----------
+    [KMW09]_, figure 5.
+    """
+    listed = check_datasets(datasets)
     _require(listed, "inverse_decay_rate", "relaxation")
     with paper_style():
         figure = new_figure(COLUMN, 2.8)
@@ -84,6 +92,7 @@ def plot_rates(dataset: xr.Dataset, *, runs: xr.Dataset | None = None) -> Figure
     -------
     matplotlib.figure.Figure
     """
+    check_dataset("dataset", dataset)
     if "gap" not in dataset and "branch_rate" not in dataset:
         _require([dataset], "gap", "gap")
     with paper_style():
@@ -120,6 +129,7 @@ def plot_asymptotic_variance(dataset: xr.Dataset) -> Figure:
     -------
     matplotlib.figure.Figure
     """
+    check_dataset("dataset", dataset)
     _require([dataset], "asymptotic_variance", "variance")
     with paper_style():
         figure = new_figure(COLUMN, 2.8)
@@ -158,6 +168,12 @@ def plot_spectrum(found: Spectrum) -> Figure:
     -------
     matplotlib.figure.Figure
     """
+    check_spectrum(found)
+    return spectrum_figure(found)
+
+
+def spectrum_figure(found: Spectrum | StoredSpectrum) -> Figure:
+    """Draw what `plot_spectrum` shows, also of a spectrum from a file."""
     with paper_style():
         figure = new_figure(COLUMN, 2.8)
         axes = figure.subplots()

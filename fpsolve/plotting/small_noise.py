@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from fpsolve.plotting.selection import check_dataset, check_datasets
 from fpsolve.plotting.style import COLOURS, COLUMN, PAGE, new_figure, paper_style
 
 if TYPE_CHECKING:
@@ -36,9 +37,7 @@ def plot_small_noise(datasets: xr.Dataset | Iterable[xr.Dataset]) -> Figure:
     -------
     matplotlib.figure.Figure
     """
-    import xarray as xr
-
-    listed = [datasets] if isinstance(datasets, xr.Dataset) else list(datasets)
+    listed = check_datasets(datasets)
     with paper_style():
         figure = new_figure(COLUMN if len(listed) == 1 else PAGE, 3.1)
         panels = figure.subplots(1, len(listed), sharey=True, squeeze=False)[0]
@@ -97,6 +96,7 @@ def plot_small_noise_spectrum(dataset: xr.Dataset) -> Figure:
     -------
     matplotlib.figure.Figure
     """
+    check_dataset("dataset", dataset)
     with paper_style():
         figure = new_figure(COLUMN, 2.6)
         axes = figure.subplots()

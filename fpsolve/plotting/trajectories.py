@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias, cast
 import numpy as np
 from numpy.typing import NDArray
 
+from fpsolve.plotting.selection import check_paths
 from fpsolve.plotting.style import (
     COLOURS,
     COLUMN,
@@ -135,6 +136,7 @@ def plot_fibre(paths: Paths, k: int = 0) -> Figure:
     ----------
     [KMW09]_, equation (6).
     """
+    check_paths(paths)
     with paper_style():
         figure, _ = _fibres([paths], k)
         figure.suptitle(_parameters(paths))
@@ -177,6 +179,8 @@ def plot_nozzles(paths: Sequence[Paths], k: int = 0) -> Figure:
 
 def _several(paths: Paths | Sequence[Paths]) -> list[Paths]:
     several = list(paths) if isinstance(paths, Sequence) else [paths]
+    for one in several:
+        check_paths(one)
     if not several:
         raise ValueError("`paths` must hold at least one ensemble to draw, got none.")
     return several

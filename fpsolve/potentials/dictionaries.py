@@ -13,9 +13,9 @@ from fpsolve.potentials.power import PowerPotential
 from fpsolve.potentials.quadratic import QuadraticPotential
 from fpsolve.potentials.user import CallablePotential
 
-__all__ = ["potential_from_dict"]
+__all__ = ["KINDS", "potential_from_dict"]
 
-_KINDS: dict[str, type[Potential]] = {
+KINDS: dict[str, type[Potential]] = {
     potential.kind: potential
     for potential in (
         QuadraticPotential,
@@ -47,7 +47,7 @@ def potential_from_dict(description: Mapping[str, Any]) -> Potential:
             f"`potential` must not be made of functions to be read back, got "
             f"{parameters.get('description', 'a callable')}; build it again in Python."
         )
-    if kind not in _KINDS:
-        known = ", ".join(repr(name) for name in _KINDS)
+    if kind not in KINDS:
+        known = ", ".join(repr(name) for name in KINDS)
         raise ValueError(f"`kind` of a potential must be one of {known}, got {kind!r}.")
-    return construct(_KINDS[kind], kind, parameters)
+    return construct(KINDS[kind], kind, parameters)

@@ -8,7 +8,6 @@ from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.integrate import cubature
 
 __all__ = ["partition_function_of"]
 
@@ -109,6 +108,7 @@ def _quadrant_integrals(
     value: _Value, inner: float, outer: float, heaviest: float
 ) -> list[tuple[float, float]]:
     """∫ exp(-B) over inner < r < outer and its error, for each quadrant."""
+    from scipy.integrate import cubature
 
     def density(points: NDArray[np.float64]) -> NDArray[np.float64]:
         r, angle = points.T

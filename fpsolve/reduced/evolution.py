@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from fpsolve._checks import check_one_of
 from fpsolve.errors import RunInterrupted
 from fpsolve.progress import ProgressCallback
 from fpsolve.reduced.entropy import Exchange, relative_entropy_of
@@ -238,9 +239,7 @@ def check_arguments(
     generator: Any, start: Array, equilibrium: Array, method: str
 ) -> None:
     """Raise ValueError unless the arguments of `relax` fit each other."""
-    if method not in METHODS:
-        known = ", ".join(repr(name) for name in METHODS)
-        raise ValueError(f"`method` must be one of {known}, got {method!r}.")
+    check_one_of("method", method, METHODS)
     n = generator.shape[0]
     for name, masses in (("start", start), ("equilibrium", equilibrium)):
         if np.shape(masses) != (n,):

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from fpsolve._checks import check_real
 from fpsolve._kernels.characteristics import (
     blend,
     interpolate_at_feet,
@@ -81,6 +82,7 @@ class AdjustedAdvection:
                 f"`interpolation_order` must be 4 or 6, got {interpolation_order!r}; "
                 "4 interpolates with cubics, 6 with quintics."
             )
+        perturbation = check_real("perturbation", perturbation)
         if not 0 < perturbation < 1:
             raise ValueError(
                 f"`perturbation` must lie between 0 and 1, got {perturbation:g}; "

@@ -7,8 +7,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve.grids import PhaseSpaceGrid
-from fpsolve.models import LayDownModel
+from fpsolve._checks import check_flag
+from fpsolve.grids import PhaseSpaceGrid, check_grid
+from fpsolve.models import LayDownModel, check_model
 from fpsolve.schemes.form import State, balanced_form, plain_form
 from fpsolve.schemes.rotation import RotationDiffusion
 from fpsolve.schemes.translation import Translation
@@ -34,8 +35,21 @@ class DriftKick:
     ----------
     model : LayDownModel
     grid : PhaseSpaceGrid
-    positive, balanced : bool
+    positive : bool
+        Never below zero: clamped fluxes, limited rows.
+    balanced : bool
+        Evolve h = p/p_S.
     interpolation_order : int
+        Points of the translation in each direction, even.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an argument is none of these.
+
+    References
+    ----------
+    Composed as in [Str68]_; `positive` after [ZS10]_. The equation is (7) of [KMW09]_.
     """
 
     name = "drift_kick"
@@ -53,8 +67,11 @@ class DriftKick:
         balanced: bool = False,
         interpolation_order: int = 8,
     ) -> None:
+        check_model(model)
+        check_grid(grid)
         self.model, self.grid = model, grid
-        self.positive, self.balanced = bool(positive), bool(balanced)
+        self.positive = check_flag("positive", positive)
+        self.balanced = check_flag("balanced", balanced)
         self.interpolation_order = interpolation_order
         self.form = balanced_form(model, grid) if balanced else plain_form(grid)
         self.translate = Translation(model, grid, interpolation_order, self.positive)

@@ -60,7 +60,8 @@ class RotationDiffusion:
         shape = grid.shape[:2]
         self.force = (np.broadcast_to(force1, shape), np.broadcast_to(force2, shape))
         self.strength = np.hypot(*self.force).ravel()
-        self.phases = turning_phases(np.arctan2(self.force[1], self.force[0]), grid)
+        angle = np.arctan2(self.force[1], self.force[0]).ravel()
+        self.direction = np.stack([np.cos(angle), np.sin(angle)])
         self.transforms = angular_transforms(grid)
         self._tables: dict[float, RotationTable] = {}
 
@@ -73,7 +74,7 @@ class RotationDiffusion:
             table.matrix_of,
             table.coefficients,
             table.matrices,
-            self.phases,
+            self.direction,
             table.damping,
             self.reaction(s, ds),
             *self.transforms,
@@ -112,8 +113,8 @@ class RotationDiffusion:
 
     @property
     def n_arrays(self) -> float:
-        """Memory held, in densities: phases, and at most three for the table."""
-        return 1.0 + LARGEST_TABLE
+        """Memory held, in densities: at most three for the table."""
+        return LARGEST_TABLE
 
 
 def check_even(grid: PhaseSpaceGrid) -> None:
@@ -125,24 +126,21 @@ def check_even(grid: PhaseSpaceGrid) -> None:
         )
 
 
-def turning_phases(direction: Array, grid: PhaseSpaceGrid) -> Array:
-    """cos mφ and sin mφ of the direction φ of ∇B; shape (n1 n2, 2, n_alpha/2)."""
-    turned = np.exp(1j * direction.ravel())
-    phases = np.empty((turned.size, 2, grid.shape[2] // 2))
-    power = np.ones_like(turned)
-    for mode in range(phases.shape[2]):
-        phases[:, 0, mode], phases[:, 1, mode] = power.real, power.imag
-        power = power * turned
-    return phases
+def angular_transforms(grid: PhaseSpaceGrid) -> tuple[Array, Array]:
+    """Cosine and sine matrices on a quarter of the circle, and their inverses.
 
-
-def angular_transforms(grid: PhaseSpaceGrid) -> tuple[Array, Array, Array, Array]:
-    """Cosine and sine matrices on half the circle and their inverses; (M, M)."""
+    Shape (2, 2, H, H): [cosine or sine, parity of the modes, angle, mode] and the
+    inverse with mode before angle; H = n_alpha/4, rounded up.
+    """
     n_alpha = grid.shape[2]
-    modes = np.arange(n_alpha // 2)
-    angles = np.outer(grid.alpha[: n_alpha // 2], modes)
-    weight = np.where(modes == 0, 1.0, 2.0) / n_alpha
-    cosines, sines = np.cos(angles), np.sin(angles)
-    inverse_cosines = np.ascontiguousarray((cosines * weight).T)
-    inverse_sines = np.ascontiguousarray((sines * weight).T)
-    return cosines, sines, inverse_cosines, inverse_sines
+    half = n_alpha // 2
+    quarter = -(-half // 2)
+    forward = np.zeros((2, 2, quarter, quarter))
+    for parity in (0, 1):
+        modes = np.arange(parity, half, 2)
+        angles = np.outer(grid.alpha[:quarter], modes)
+        forward[0, parity, :, : modes.size] = np.cos(angles)
+        forward[1, parity, :, : modes.size] = np.sin(angles)
+    backward = np.ascontiguousarray(forward.swapaxes(2, 3)) * (2.0 / n_alpha)
+    backward[0, 0, 0] /= 2.0
+    return forward, backward

@@ -7,7 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve._kernels.rotation import rotation_matrices
+from fpsolve._kernels.lanes import LANES
+from fpsolve._kernels.moebius import rotation_matrices
+from fpsolve._kernels.rotation import QUADS_PER_BATCH
 
 Array = NDArray[np.float64]
 
@@ -23,14 +25,17 @@ NODES = 8
 
 @dataclass(frozen=True)
 class RotationTable:
-    """Rows sorted by |∇B|, and M(|∇B|) = R½ D R½ for them.
+    """Rows in quads of equal |∇B|, and M(|∇B|) = R½ D R½ for them.
 
     Attributes
     ----------
-    rows, matrix_of : ndarray of int, shape (n1 n2,)
-        Row numbers in the order of |∇B|, and the interval each belongs to.
-    coefficients : ndarray, shape (n1 n2, Q)
-        Interpolation weights of the sorted rows; Q = 1 for exact matrices.
+    rows : ndarray of int, shape (4 n_quads,)
+        Row numbers in the order of |∇B|; four at a time share a matrix. Where there
+        are not four, the last is repeated.
+    matrix_of : ndarray of int, shape (n_quads,)
+        Which matrix, or which interval of interpolation.
+    coefficients : ndarray, shape (n_quads, Q, 4)
+        Interpolation weights of the rows of a quad; Q = 1 for exact matrices.
     matrices : ndarray, shape (Q, n_intervals, M, M)
         Mode in, mode out; M = n_alpha/2.
     damping : float
@@ -80,7 +85,33 @@ def rotation_table(
         angles = opening(ordered, ds)
         matrix_of, coefficients, nodes = chebyshev_intervals(angles, half)
         matrices = np.stack([matrices_at(at, heat, balanced) for at in nodes])
-    return RotationTable(rows, matrix_of, coefficients, matrices, damping)
+    places, quad_matrix = quads(matrix_of)
+    by_quad = coefficients[places].reshape(-1, LANES, coefficients.shape[1])
+    return RotationTable(
+        rows[places],
+        quad_matrix,
+        np.ascontiguousarray(by_quad.transpose(0, 2, 1)),
+        matrices,
+        damping,
+    )
+
+
+def quads(matrix_of: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Places in the sorted rows, four of one matrix at a time, and those matrices.
+
+    Where the rows of a matrix are no multiple of four the last is repeated, and so is
+    the last quad until the last batch is full: the same result is written twice.
+    """
+    starts = np.flatnonzero(np.diff(matrix_of, prepend=-1))
+    sizes = np.diff(starts, append=matrix_of.size)
+    n_quads = -(-sizes // LANES)
+    first = np.repeat(np.cumsum(n_quads) - n_quads, n_quads)
+    within = np.arange(n_quads.sum()) - first
+    offsets = LANES * within[:, None] + np.arange(LANES)
+    last = np.repeat(sizes, n_quads)[:, None] - 1
+    places = np.repeat(starts, n_quads)[:, None] + np.minimum(offsets, last)
+    places = np.pad(places, ((0, -len(places) % QUADS_PER_BATCH), (0, 0)), mode="edge")
+    return places.ravel(), matrix_of[places[:, 0]]
 
 
 def opening(strength: Array, ds: float) -> Array:

@@ -7,8 +7,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve.grids import PhaseSpaceGrid
-from fpsolve.models import LayDownModel
+from fpsolve._checks import check_flag, check_one_of
+from fpsolve.grids import PhaseSpaceGrid, check_grid
+from fpsolve.models import LayDownModel, check_model
 from fpsolve.schemes.adjusted_advection import AdjustedAdvection
 from fpsolve.schemes.diffusion import ImplicitDiffusion
 from fpsolve.schemes.form import State, balanced_form, plain_form
@@ -30,6 +31,36 @@ class SemiLagrangian:
     noise and keeps the equilibrium on a fixed belt to rounding; `form="p"` is the
     historical variant, which blows up at low noise. Build it with
     `fpsolve.semi_lagrangian`.
+
+    Parameters
+    ----------
+    model : LayDownModel
+    grid : PhaseSpaceGrid
+    form : str
+        What is evolved, "h" = p/p_S or "p".
+    splitting : str
+        "strang" or "lie".
+    diffusion : str
+        "crank_nicolson" or "backward_euler".
+    interpolation_order : int
+        Points of the interpolation at the feet in each direction, 4 or 6.
+    limited : bool
+        Hold each interpolated value within those of the cells around its foot.
+    perturbation : float
+        η of the moved feet, between 0 and 1.
+    adjusted : bool
+        Restore the mass by adjusted advection.
+    compact : bool
+        Second differences of order 4 in Δα instead of 2.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an argument is none of these.
+
+    References
+    ----------
+    [KRS09]_; feet as in [DR82]_, mass as in [DHP99]_; [KMW09]_, section 3.1.1.
     """
 
     name = "semi_lagrangian"
@@ -48,19 +79,21 @@ class SemiLagrangian:
         adjusted: bool = True,
         compact: bool = True,
     ) -> None:
-        check_choice("form", form, ("h", "p"))
-        check_choice("splitting", splitting, tuple(ORDERS))
-        check_choice("diffusion", diffusion, tuple(IMPLICITNESS))
+        check_model(model)
+        check_grid(grid)
+        check_one_of("form", form, ("h", "p"))
+        check_one_of("splitting", splitting, ORDERS)
+        check_one_of("diffusion", diffusion, IMPLICITNESS)
         self.model, self.grid = model, grid
         self.options: dict[str, Any] = {
             "form": form,
             "splitting": splitting,
             "diffusion": diffusion,
             "interpolation_order": interpolation_order,
-            "limited": bool(limited),
+            "limited": check_flag("limited", limited),
             "perturbation": perturbation,
-            "adjusted": bool(adjusted),
-            "compact": bool(compact),
+            "adjusted": check_flag("adjusted", adjusted),
+            "compact": check_flag("compact", compact),
         }
         self.balanced = form == "h"
         self.form = balanced_form(model, grid) if self.balanced else plain_form(grid)
@@ -109,10 +142,3 @@ class SemiLagrangian:
             self.transport(state, s, ds)
             self.diffuse(state.values, s + ds / 2, ds / 2, state.values)
         state.n_steps += 1
-
-
-def check_choice(name: str, value: str, known: tuple[str, ...]) -> None:
-    """Raise if `value` is not one of the known choices."""
-    if value not in known:
-        choices = ", ".join(repr(choice) for choice in known)
-        raise ValueError(f"`{name}` must be one of {choices}, got {value!r}.")

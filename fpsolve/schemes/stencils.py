@@ -7,8 +7,6 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve._kernels.translation import TAP_GROUP
-
 Array = NDArray[np.float64]
 # Weights that belong to the taps first, first + 1, …; shape (n_taps, n_alpha).
 Taps = tuple[int, Array]
@@ -73,12 +71,12 @@ def whole_and_fraction(shift: Array) -> tuple[NDArray[np.int64], Array]:
 def spread(weights: Array, first: int, whole: NDArray[np.int64]) -> Taps:
     """Weights moved by `whole[k]` taps onto one range of taps common to all angles.
 
-    Zero where an angle does not use a tap; padded to full groups of taps.
+    Zero where an angle does not use a tap.
     """
     n_taps, n = weights.shape
     lowest, highest = int(whole.min()), int(whole.max())
     length = n_taps + highest - lowest
-    dense = np.zeros((-(-length // TAP_GROUP) * TAP_GROUP, n))
+    dense = np.zeros((length, n))
     rows = np.arange(n_taps)[:, None] + (whole - lowest)
     dense[rows, np.arange(n)] = weights
     return first + lowest, dense

@@ -8,20 +8,21 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import psutil
 from numpy.typing import ArrayLike, NDArray
 
-from fpsolve._checks import check_positive
+from fpsolve._arrays import check_numbers
+from fpsolve._blas import one_blas_thread
 from fpsolve.diagnostics import MOMENTS
 from fpsolve.errors import MemoryLimitError, ToleranceError
 from fpsolve.grids import PhaseSpaceGrid
+from fpsolve.memory import allowed_memory
 from fpsolve.models import LayDownModel
 from fpsolve.potentials import QuadraticPotential
 from fpsolve.spectral import quadrature
 from fpsolve.spectral.expansion import Expansion, spread
 from fpsolve.spectral.exponential import ForwardOperator
 from fpsolve.spectral.projection import DensityStart, GaussianStart
-from fpsolve.spectral.quadratic import check_model, quadratic
+from fpsolve.spectral.quadratic import check_model, checked_tolerance, quadratic
 from fpsolve.spectral.solution import SpectralSolution
 
 __all__ = ["spectral_solve"]
@@ -45,6 +46,7 @@ SHARE_OF_ENTROPY = 0.1
 ARRAYS = 5
 
 
+@one_blas_thread()
 def spectral_solve(
     model: LayDownModel,
     p0: Any,
@@ -102,10 +104,10 @@ def spectral_solve(
     [KMW09]_, equations (7), (9) and (11).
     """
     check_model(model)
-    tolerance = check_positive("tolerance", tolerance)
+    tolerance = checked_tolerance(tolerance)
     stops = checked_arclengths(s)
     start = start_of(p0, quadratic(model), tolerance)
-    budget = psutil.virtual_memory().available if memory_limit is None else memory_limit
+    budget = allowed_memory(memory_limit)
     coarse = run(model, start, stops, level(0, tolerance, budget, stops.size))
     for refinement in range(1, LEVELS):
         try:
@@ -141,7 +143,7 @@ class Run:
     doubts: Array
 
 
-def level(refinement: int, tolerance: float, budget: int, n_stops: int) -> Level:
+def level(refinement: int, tolerance: float, budget: float, n_stops: int) -> Level:
     """Truncation number `refinement`; MemoryLimitError if it may not fit."""
     digits = max(4.0, -math.log10(tolerance))
     size = digits * RATIO**refinement
@@ -150,7 +152,7 @@ def level(refinement: int, tolerance: float, budget: int, n_stops: int) -> Level
     # Expansions that are kept, of two runs, shrink as the density spreads.
     required = int(one * (ARRAYS + 0.5 * n_stops))
     if not required <= budget:
-        raise MemoryLimitError(required, budget, "ask for fewer `s`")
+        raise MemoryLimitError(required, int(budget), "ask for fewer `s`")
     return Level(degree, harmonics, tolerance * TIGHTER ** (1 - refinement))
 
 
@@ -280,7 +282,7 @@ def start_of(
 
 def checked_arclengths(s: ArrayLike) -> Array:
     """s as an increasing array; ValueError unless it is one."""
-    stops = np.atleast_1d(np.asarray(s, dtype=np.float64))
+    stops = np.atleast_1d(check_numbers("s", s))
     if stops.ndim != 1 or stops.size == 0:
         raise ValueError(f"`s` must be one number or a list of them, got {s!r}.")
     if not (

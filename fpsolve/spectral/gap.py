@@ -14,6 +14,11 @@ __all__ = ["SpectralGap", "spectral_gap"]
 class SpectralGap(float):
     """-max Re λ over the spectrum of L without 0, a float with its error.
 
+    Parameters
+    ----------
+    rate : float
+        The gap.
+
     Attributes
     ----------
     error : float
@@ -75,6 +80,10 @@ def spectral_gap(
     ------
     ValueError, MemoryLimitError, ToleranceError
         As for `spectrum`.
+
+    References
+    ----------
+    [KMW09]_, section 3.1.1; that there is a gap: [DKMS13]_.
     """
     found = spectrum(model, 1, tolerance=tolerance, memory_limit=memory_limit)
     return SpectralGap.of(found)

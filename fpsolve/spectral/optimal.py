@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
+from fpsolve._blas import one_blas_thread
 from fpsolve.errors import ToleranceError
 from fpsolve.models import LayDownModel
 from fpsolve.potentials import Potential
@@ -62,6 +63,7 @@ class OptimalNoise:
     sectors: tuple[Sector | None, ...]
 
 
+@one_blas_thread()
 def optimal_noise(potential: Potential, *, tolerance: float = 1e-8) -> OptimalNoise:
     """The noise A that maximises the spectral gap, and the gap there, on a fixed belt.
 
@@ -89,6 +91,10 @@ def optimal_noise(potential: Potential, *, tolerance: float = 1e-8) -> OptimalNo
         If there is no gap or no basis, see `spectrum`, or no maximum in the scan.
     ToleranceError
         If the truncations tried do not reach the tolerance.
+
+    References
+    ----------
+    The question is that of [KMW09]_, section 3.1.1 and theorem 3.3.
     """
     tolerance = check_tolerance(tolerance)
     meeting = Meeting.near(potential, *located(potential))

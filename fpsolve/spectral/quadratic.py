@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+from typing import Any
+
+from fpsolve._checks import check_positive, shown
 from fpsolve.models import LayDownModel
 from fpsolve.potentials import QuadraticPotential
 
-__all__ = ["check_model", "quadratic"]
+__all__ = ["check_model", "checked_tolerance", "quadratic"]
 
 
 def check_model(model: LayDownModel) -> None:
     """Raise unless the expansion solves the model."""
     if not isinstance(model, LayDownModel):
-        raise TypeError(f"`model` must be a LayDownModel, got {model!r}.")
+        raise TypeError(f"`model` must be a LayDownModel, got {shown(model)}.")
     quadratic(model)
     if not model.noise > 0:
         raise ValueError(
@@ -23,6 +26,17 @@ def check_model(model: LayDownModel) -> None:
             "`curve` must be a belt at rest or at constant speed, got "
             f"{model.curve!r}; use `solve` for a moving nozzle."
         )
+
+
+def checked_tolerance(tolerance: Any) -> float:
+    """The tolerance as a float; ValueError unless it is positive and at most 1."""
+    checked = check_positive("tolerance", tolerance)
+    if not checked <= 1:
+        raise ValueError(
+            f"`tolerance` must be at most 1, got {checked:g}; numbers above one are "
+            "compared relative to themselves."
+        )
+    return checked
 
 
 def quadratic(model: LayDownModel) -> QuadraticPotential:

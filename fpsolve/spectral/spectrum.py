@@ -5,12 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 import psutil
 from numpy.typing import NDArray
 
-from fpsolve._checks import check_integer, check_real
+from fpsolve._blas import one_blas_thread
+from fpsolve._checks import check_integer, check_real, shown
 from fpsolve.grids import PhaseSpaceGrid
 from fpsolve.models import LayDownModel
 from fpsolve.potentials import QuadraticPotential
@@ -29,6 +31,8 @@ Array = NDArray[np.float64]
 DEFAULT_MEMORY = 2**28
 # Rounding alone leaves about this, relative to the rate.
 FINEST = 1e-13
+# More than any basis that fits resolves.
+MOST = 1000
 
 
 @dataclass(frozen=True, eq=False)
@@ -134,6 +138,7 @@ class Spectrum:
         return "\n".join(lines)
 
 
+@one_blas_thread()
 def spectrum(
     model: LayDownModel,
     n_eigenvalues: int = 6,
@@ -182,7 +187,7 @@ def spectrum(
     ----------
     [KMW09]_, equation (9); section 3.1.1.
     """
-    n = check_integer("n_eigenvalues", n_eigenvalues, 1)
+    n = check_integer("n_eigenvalues", n_eigenvalues, 1, MOST)
     tolerance = check_tolerance(tolerance)
     discretisation = discretisation_for(model)
     essential = essential_of(model)
@@ -192,7 +197,7 @@ def spectrum(
         tolerance,
         Scale.of(model, essential),
         allowed_memory(memory_limit),
-        None if sectors is None else tuple(sectors),
+        None if sectors is None else checked_sectors(sectors),
     )
     modes: list[Mode] = []
     for mode in refinement.run():
@@ -211,6 +216,17 @@ def spectrum(
         _modes=modes,
         _discretisation=discretisation,
     )
+
+
+def checked_sectors(sectors: Any) -> tuple[Sector, ...]:
+    """The sectors as a tuple; TypeError unless it is a series of them."""
+    known = list(sectors) if isinstance(sectors, Iterable) else []
+    if not known or not all(isinstance(one, Sector) for one in known):
+        raise TypeError(
+            f"`sectors` must be a series of Sector, got {shown(sectors)}; leave it "
+            "out to search in all of them."
+        )
+    return tuple(known)
 
 
 def check_tolerance(tolerance: float) -> float:

@@ -11,14 +11,15 @@ from numpy.typing import NDArray
 from scipy import sparse
 from scipy.linalg import lu_factor, lu_solve
 
-from fpsolve._checks import check_positive
+from fpsolve._blas import one_blas_thread
+from fpsolve._checks import check_tolerance
 from fpsolve.errors import ToleranceError
 from fpsolve.grids import PhaseSpaceGrid
 from fpsolve.models import LayDownModel
 from fpsolve.spectral import quadrature
 from fpsolve.spectral.expansion import Expansion, Limits
 from fpsolve.spectral.exponential import ForwardOperator
-from fpsolve.spectral.quadratic import check_model, quadratic
+from fpsolve.spectral.quadratic import check_model, checked_tolerance, quadratic
 
 __all__ = ["SpectralSteadyState", "spectral_steady_state"]
 
@@ -72,11 +73,12 @@ class SpectralSteadyState:
         return quadrature.density_on(self._expansion, grid, quadratic(self.model))
 
 
+@one_blas_thread()
 def spectral_steady_state(
     model: LayDownModel,
     *,
     tolerance: float = 1e-8,
-    memory_limit: int = 2**31,
+    memory_limit: float = 2**31,
 ) -> SpectralSteadyState:
     """Density with L* p = 0 and mass one, for quadratic B and constant belt speed.
 
@@ -105,7 +107,8 @@ def spectral_steady_state(
     [KMW09]_, section 3.1.2.
     """
     check_model(model)
-    tolerance = check_positive("tolerance", tolerance)
+    tolerance = checked_tolerance(tolerance)
+    memory_limit = check_tolerance("memory_limit", memory_limit)
     degree, reached = DEGREE, np.inf
     coarse = stationary(model, truncation_limits(degree))
     while True:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -107,6 +107,10 @@ class CrossCheck:
     probabilities, counts : mapping of ndarray
         Of the cells of the grid along "xi1", "xi2" and "alpha", shapes (n_s, n);
         probabilities of the density, counts of paths inside the box.
+    recipe : mapping of str
+        How `cross_check` is called again; empty for two results that were compared.
+    start : ndarray, shape grid.shape, or None
+        The density p0, unless it was given as a formula.
     """
 
     model: LayDownModel | None
@@ -119,6 +123,8 @@ class CrossCheck:
     sampler: dict[str, Any]
     probabilities: Mapping[str, Array]
     counts: Mapping[str, NDArray[np.int64]]
+    recipe: Mapping[str, str] = field(default_factory=dict)
+    start: Array | None = None
 
     @property
     def agrees(self) -> bool:

@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Any
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve._checks import check_integer
+from fpsolve._arrays import check_numbers
+from fpsolve._blas import one_blas_thread
+from fpsolve._checks import check_integer, check_kind, check_real
 from fpsolve.grids import PhaseSpaceGrid
+from fpsolve.io.recipes import recipe
+from fpsolve.io.schemes import describe_scheme
 from fpsolve.models import LayDownModel
 from fpsolve.progress import ProgressCallback
 from fpsolve.schemes import drift_kick
@@ -111,7 +116,7 @@ def cross_check(
     ----------
     [KMW09]_, equations (6) and (7).
     """
-    from fpsolve.paths import sample_paths
+    from fpsolve.paths import DensityLaw, sample_paths
 
     s = _checked_places(s)
     n_paths = check_integer("n_paths", n_paths, at_least=FEWEST_PATHS)
@@ -133,9 +138,19 @@ def cross_check(
         seed=seed, initial=law, save_at=s.tolist(), method=method,
         histogram=grid, keep=False, client=client, progress=progress,
     )  # fmt: skip
-    return compare(solution, paths, s=s, false_alarm=false_alarm, cells=cells)
+    check = compare(solution, paths, s=s, false_alarm=false_alarm, cells=cells)
+    is_density = isinstance(law, DensityLaw)
+    again = recipe("cross_check", {
+        "model": model, "s": s, "n_paths": n_paths, "seed": seed, "ds": ds,
+        "paths_ds": paths_ds, "method": method, "false_alarm": false_alarm,
+        "cells": cells, "extrapolate": extrapolate, "solve_options": solve_options,
+        "scheme": describe_scheme(scheme), "grid": grid,
+        **({} if is_density else {"p0": law}),
+    })  # fmt: skip
+    return replace(check, recipe=again, start=p0 if is_density else None)
 
 
+@one_blas_thread()
 def compare(
     density: Solution | SteadyState,
     paths: Paths,
@@ -168,6 +183,9 @@ def compare(
         If both have no s in common, or there are too few paths.
     """
     _check_options(false_alarm, cells)
+    from fpsolve.paths import Paths
+
+    check_kind("paths", paths, Paths, "it is what `sample_paths` returns")
     check_integer("n_paths", paths.n_paths, at_least=FEWEST_PATHS)
     chosen = places(density, np.asarray(paths.s), s)
     size = false_alarm / (TESTS_PER_STATION * chosen.size)
@@ -202,8 +220,8 @@ def _describe_paths(paths: Paths) -> dict[str, Any]:
 
 def _checked_places(s: float | Iterable[float]) -> Array:
     """Arclengths, ascending and each once."""
-    listed = s if isinstance(s, Iterable) else (s,)
-    chosen = np.unique(np.array(list(listed), dtype=np.float64))
+    several = isinstance(s, Iterable) and not isinstance(s, str | bytes)
+    chosen = np.unique(check_numbers("s", list(cast(Any, s)) if several else [s]))
     if not (chosen.size and np.all(np.isfinite(chosen)) and chosen[0] >= 0):
         raise ValueError(f"`s` must be one or more non-negative arclengths, got {s!r}.")
     if not chosen[-1] > 0:
@@ -213,6 +231,7 @@ def _checked_places(s: float | Iterable[float]) -> Array:
 
 def _check_options(false_alarm: float, cells: int) -> None:
     check_integer("cells", cells, at_least=FEWEST_CELLS)
+    false_alarm = check_real("false_alarm", false_alarm)
     if not 0 < false_alarm < 1:
         raise ValueError(
             f"`false_alarm` must lie between 0 and 1, got {false_alarm:g}; it is the "

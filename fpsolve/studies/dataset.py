@@ -1,19 +1,22 @@
-"""A cross-check as a labelled `xarray.Dataset`."""
+"""A cross-check as a labelled `xarray.Dataset`, and back."""
 
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fpsolve.provenance import versions
-from fpsolve.studies.agreement import MARGINALS, CrossCheck
+from fpsolve.grids import PhaseSpaceGrid
+from fpsolve.io.attributes import check_complete, made_with, read_model, to_json
+from fpsolve.io.recipes import RECIPE
+from fpsolve.studies.agreement import MARGINALS, AgreementTest, CrossCheck
 
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["to_xarray"]
+__all__ = ["from_xarray", "to_xarray"]
 
 _NUMBERS = {
     "statistic": "χ², largest |z|, or z",
@@ -27,6 +30,18 @@ _NUMBERS = {
     "paths": "value by the paths",
     "standard_error": "standard error of the value by the paths",
 }
+
+_NEEDED_ATTRIBUTES = (
+    "false_alarm",
+    "n_paths",
+    "equation",
+    "model",
+    "grid",
+    "solver",
+    "sampler",
+)
+# Stands for the degrees of freedom of a test that has none.
+_NO_DEGREES = -1
 
 
 def to_xarray(check: CrossCheck) -> xr.Dataset:
@@ -45,12 +60,17 @@ def to_xarray(check: CrossCheck) -> xr.Dataset:
     import xarray as xr
 
     names = list(check.detectable)
-    variables = {
+    variables: dict[str, Any] = {
         number: (("s", "test"), _table(check, number, np.float64), _labels(meaning))
         for number, meaning in _NUMBERS.items()
     }
     agrees = _table(check, "agrees", np.int8)
     variables["agrees"] = (("s", "test"), agrees, _labels("1 if the test agrees"))
+    degrees = [_NO_DEGREES if t.degrees is None else t.degrees for t in check.tests]
+    variables["degrees"] = (
+        ("s", "test"), np.array(degrees, dtype=np.int64).reshape(len(check.s), -1),
+        _labels("degrees of freedom, -1 if the test has none"),
+    )  # fmt: skip
     for which in MARGINALS:
         variables[f"probability_{which}"] = (
             ("s", which), check.probabilities[which],
@@ -60,12 +80,73 @@ def to_xarray(check: CrossCheck) -> xr.Dataset:
             ("s", which), check.counts[which],
             _labels(f"paths inside the box in a cell of {which}"),
         )  # fmt: skip
+    if check.start is not None:
+        meaning = "probability density p0 of the start"
+        variables["initial_density"] = (MARGINALS, check.start, _labels(meaning))
     coordinates = {
         "s": ("s", check.s, _labels("arclength s")),
         "test": ("test", np.array(names, dtype=object)),
         **{which: (which, getattr(check.grid, which)) for which in MARGINALS},
     }
     return xr.Dataset(variables, coordinates, _attributes(check))
+
+
+def from_xarray(dataset: xr.Dataset) -> CrossCheck:
+    """Return the cross-check that `to_xarray` turned into `dataset`.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+
+    Raises
+    ------
+    ValueError
+        If the dataset does not have the layout of `to_xarray`.
+
+    Warns
+    -----
+    UserWarning
+        If the model was made of a user's own functions; `model` is None then.
+    """
+    numbers = (*_NUMBERS, "degrees", "s", "test")
+    counts = [f"{kind}_{which}" for kind in ("probability", "count")
+              for which in MARGINALS]  # fmt: skip
+    check_complete(dataset, (*numbers, *counts), _NEEDED_ATTRIBUTES)
+    about = dataset.attrs
+    return CrossCheck(
+        model=read_model(about, {}) if about["model"] else None,
+        grid=PhaseSpaceGrid.from_dict(json.loads(about["grid"])),
+        s=dataset["s"].to_numpy(),
+        tests=tuple(_read_tests(dataset)),
+        false_alarm=float(about["false_alarm"]),
+        n_paths=int(about["n_paths"]),
+        solver=json.loads(about["solver"]),
+        sampler=json.loads(about["sampler"]),
+        probabilities={
+            which: dataset[f"probability_{which}"].to_numpy() for which in MARGINALS
+        },
+        counts={which: dataset[f"count_{which}"].to_numpy() for which in MARGINALS},
+        recipe={RECIPE: about[RECIPE]} if RECIPE in about else {},
+        start=(
+            dataset["initial_density"].to_numpy()
+            if "initial_density" in dataset
+            else None
+        ),
+    )
+
+
+def _read_tests(dataset: xr.Dataset) -> Iterator[AgreementTest]:
+    """Yield every test, in the order of arclengths, then names."""
+    tables = {number: dataset[number].to_numpy() for number in _NUMBERS}
+    degrees = dataset["degrees"].to_numpy()
+    for row, s in enumerate(dataset["s"].to_numpy()):
+        for column, name in enumerate(dataset["test"].to_numpy()):
+            free = int(degrees[row, column])
+            yield AgreementTest(
+                float(s), str(name),
+                degrees=None if free == _NO_DEGREES else free,
+                **{key: float(table[row, column]) for key, table in tables.items()},
+            )  # fmt: skip
 
 
 def _table(check: CrossCheck, number: str, kind: type) -> Any:
@@ -87,8 +168,10 @@ def _attributes(check: CrossCheck) -> dict[str, Any]:
         "false_alarm": check.false_alarm,
         "n_paths": check.n_paths,
         "equation": "" if model is None else model.equation,
+        "model": "" if model is None else to_json(model.to_dict()),
         "grid": json.dumps(check.grid.to_dict()),
         "solver": json.dumps(check.solver),
         "sampler": json.dumps(check.sampler),
-        "versions": json.dumps(versions()),
+        **made_with(),
+        **check.recipe,
     }

@@ -11,12 +11,15 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve._checks import check_integer, check_positive
+from fpsolve._blas import one_blas_thread
+from fpsolve._checks import check_integer, check_kind, check_positive
+from fpsolve.io.attributes import made_with
+from fpsolve.io.recipes import recipe
 from fpsolve.models import LayDownModel
 from fpsolve.paths import EquilibriumLaw, sample_paths
 from fpsolve.potentials import Potential
 from fpsolve.progress import ProgressCallback, reporting
-from fpsolve.provenance import versions
+from fpsolve.studies.arguments import check_functions, series_of
 from fpsolve.studies.asymptotic_variance import SETTLED
 from fpsolve.studies.ergodic_dataset import averages_dataset
 from fpsolve.studies.ergodic_fit import ErgodicFit, fit_ergodic_error
@@ -129,13 +132,22 @@ def ergodic_averages(
     ----------
     [KMW09]_, equation (12) and theorem 3.3.
     """
+    sequence = _own_sequence(seed)
+    noises = series_of(noises)
+    check_kind("potential", potential, Potential, "for instance QuadraticPotential()")
+    if functions is not None:
+        functions = check_functions(functions)
+    again = recipe("ergodic_averages", {
+        "potential": potential, "noises": noises, "s_end": s_end, "ds": ds,
+        "n_paths": n_paths, "seed": sequence, "functions": functions,
+        "n_saved": n_saved,
+    })  # fmt: skip
     functions = dict(default_observables(potential) if functions is None else functions)
     _check(potential, functions, n_paths, n_saved)
     s_end = check_positive("s_end", s_end)
     amplitudes = _amplitudes(noises)
     moments = equilibrium_moments(potential, functions)
     saved, steps = _arclengths(amplitudes, s_end, ds, n_saved)
-    sequence = _own_sequence(seed)
     tasks = [
         _Task(potential, noise, step, saved, n_paths, child, functions, moments.mean)
         for noise, step, child in zip(
@@ -153,7 +165,8 @@ def ergodic_averages(
         formula=potential.formula,
         n_paths=n_paths,
         seed=json.dumps([sequence.entropy, *sequence.spawn_key]),
-        versions=json.dumps(versions()),
+        **made_with(),
+        **again,
     )
 
 
@@ -168,8 +181,6 @@ def _check(
             f"`potential` must have a normalisable exp(-B), got {potential!r}; without "
             "an equilibrium there is nothing to converge to."
         )
-    if not functions:
-        raise ValueError("`functions` must hold at least one function, got none.")
     check_integer("n_paths", n_paths, N_BATCHES)
     check_integer("n_saved", n_saved, 8)
 
@@ -223,6 +234,7 @@ def _run(
             report(n_done, sum(path_steps), float(task.saved[-1]))
 
 
+@one_blas_thread()
 def _squared_errors(task: _Task) -> Array:
     """E|s⁻¹∫f − E f|² within each batch; shape (batch, function, s)."""
     paths = sample_paths(

@@ -46,11 +46,13 @@ class KernelRate:
 def rotation_flops(n_alpha: int, n_matrices: int) -> float:
     """Operations per cell of the angle step, matrix products only.
 
-    Per row of n_alpha = 2M cells: four cosine or sine transforms, 2M² each, and
-    n_matrices products of the real and the imaginary part with an M x M matrix.
+    Per row of n_alpha = 2M = 4H cells: eight cosine or sine transforms of H values, 2H²
+    each, and n_matrices products of the real and the imaginary part with an M x M
+    matrix.
     """
     half = n_alpha // 2
-    return (4 * 2 * half**2 + n_matrices * 2 * 2 * half**2) / n_alpha
+    quarter = -(-half // 2)
+    return (8 * 2 * quarter**2 + n_matrices * 2 * 2 * half**2) / n_alpha
 
 
 def filter_flops(order: int) -> float:

@@ -20,7 +20,7 @@ for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
 
 import numpy as np  # noqa: E402
 from machine import processor_name  # noqa: E402
-from report import write_json  # noqa: E402
+from results import write_json  # noqa: E402
 from timing import Measured, Stopwatch, keep_memory, measure  # noqa: E402
 
 import fpsolve as fp  # noqa: E402

@@ -1,35 +1,52 @@
-"""Error against CPU time: our schemes and their peers on one problem, in one run.
+"""The whole benchmark, part after part: errors against CPU time, scaling, start.
 
-    python validation/performance/run.py            # all peers that are installed
-    python validation/performance/run.py --quick    # tiny grids, under 40 s
+    python validation/performance/run.py                     # half an hour
+    python validation/performance/run.py --part noises --noises 0.3 --solvers fipy
+    python validation/performance/run.py --resume            # only what is not there
+    python validation/performance/run.py --quick             # tiny grids, a minute
 
-Every density is compared with the same converged reference (reference.py). Peers are
-optional: py-pde comes with fpsolve, FiPy with the extra "benchmarks"; Dedalus needs
-MPI and FFTW on the machine (README.md). Those that
-cannot be imported are named and left out.
+Every part is a process of its own, on one thread (threads: two), and writes a JSON
+file of its own under results/, so that a run can be stopped and gone on with. At the
+end the tables are printed and the figures drawn from these files. Peers are optional
+(README.md says how to install them): those that cannot be imported are named and left
+out. The full run asserts nothing about times.
 """
 
 from __future__ import annotations
 
 import argparse
-import importlib
-import os
-import platform
+import importlib.util
+import json
+import subprocess
 import sys
-from datetime import UTC, datetime
-from importlib.metadata import PackageNotFoundError, version
+from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
-RESULTS = Path(__file__).parent / "results"
-PEERS = ("pypde", "fipy", "dedalus", "fourier")
-PACKAGES = ("fpsolve", "numpy", "scipy", "numba", "py-pde", "fipy", "dedalus")
-THREAD_VARIABLES = (
-    "OMP_NUM_THREADS",
-    "OPENBLAS_NUM_THREADS",
-    "MKL_NUM_THREADS",
-    "NUMBA_NUM_THREADS",
-)
+from results import FOLDER, add_options, path_of
+
+HERE = Path(__file__).parent
+NOISES = (1.0, 0.3, 3.0)
+PACKAGE = {"pypde": "pde"}  # whose import name is not that of its module here
+SOLVERS = ("ours", "pypde", "fipy", "dedalus", "fplanck", "fourier")
+STUDIES = {
+    "cells": "scaling_cells.py",
+    "s": "scaling_s.py",
+    "memory": "memory_use.py",
+    "operators": "operators.py",
+    "threads": "scaling_threads.py",
+    "start": "start_up.py",
+    "targets": "targets.py",
+}
+
+
+@dataclass(frozen=True)
+class Step:
+    """One process: its script and options, and whether its numbers are there."""
+
+    script: str
+    options: tuple[str, ...]
+    done: bool
 
 
 def parse(arguments: list[str] | None = None) -> argparse.Namespace:
@@ -37,119 +54,76 @@ def parse(arguments: list[str] | None = None) -> argparse.Namespace:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("--quick", action="store_true", help="tiny grids, no timings")
-    parser.add_argument("--peers", nargs="*", choices=PEERS, help="default: all")
-    parser.add_argument("--threads", type=int, default=1, help="default: 1")
-    parser.add_argument("--s", type=float, default=1.0, help="solve to this s")
-    parser.add_argument("--out", type=Path, default=RESULTS, help="folder for results")
+    parts = ("noises", *STUDIES)
+    parser.add_argument("--part", nargs="+", choices=parts, help="default: all")
+    parser.add_argument("--noises", nargs="+", type=float, choices=NOISES)
+    parser.add_argument("--solvers", nargs="+", choices=SOLVERS, help="default: all")
+    parser.add_argument("--resume", action="store_true", help="only what is not there")
+    add_options(parser)
     return parser.parse_args(arguments)
 
 
-def set_threads(n_threads: int) -> None:
-    """Fix the number of threads; numpy and numba read it when they are imported."""
-    for name in THREAD_VARIABLES:
-        os.environ[name] = str(n_threads)
+def installed(solver: str) -> bool:
+    """Whether a solver can be imported; a missing one is named."""
+    package = PACKAGE.get(solver, solver)
+    if solver in ("ours", "fourier") or importlib.util.find_spec(package):
+        return True
+    print(f"{solver} left out: no module {package!r} is installed", file=sys.stderr)
+    return False
 
 
-def installed_versions() -> dict[str, str | None]:
-    """Versions of Python and of everything that is compared."""
-    found: dict[str, str | None] = {"python": platform.python_version()}
-    for package in PACKAGES:
-        try:
-            found[package] = version(package)
-        except PackageNotFoundError:
-            found[package] = None
-    return found
+def has_section(noise: float, solver: str, arguments: argparse.Namespace) -> bool:
+    """Whether the numbers of one solver at one noise are there."""
+    path = path_of(f"noise-{noise:g}", arguments.out, quick=arguments.quick)
+    return path.exists() and solver in json.loads(path.read_text("utf-8"))["sections"]
 
 
-def solve_ours(s_end: float, *, quick: bool) -> list[Any]:
-    """Run every case of ours.py."""
-    import ours
-
-    cases = ours.QUICK_CASES if quick else ours.CASES
-    return [ours.solve(setting, s_end) for setting in cases]
-
-
-def solve_peer(name: str, s_end: float, *, quick: bool) -> list[Any]:
-    """Run one peer with its own settings; a peer that is not installed is named."""
-    try:
-        peer = importlib.import_module(f"peer_{name}")
-    except ImportError as error:
-        print(f"peer {name} left out: {error}", file=sys.stderr)
-        return []
-    runs = peer.QUICK_RUNS if quick else peer.RUNS
-    return [peer.solve(s_end, **setting) for setting in runs]
+def noise_steps(arguments: argparse.Namespace) -> Iterator[Step]:
+    """Errors against CPU time: a process for every noise and solver."""
+    noises = arguments.noises or (NOISES[:1] if arguments.quick else NOISES)
+    solvers = [name for name in arguments.solvers or SOLVERS if installed(name)]
+    for noise in noises:
+        for solver in solvers:
+            options = ("--noise", f"{noise:g}", "--solver", solver)
+            done = has_section(noise, solver, arguments)
+            yield Step("noises.py", options, done)
 
 
-def check(rows: list[Any], *, quick: bool) -> None:
-    """Assert what does not depend on the machine: that every solver converges to p.
-
-    No bound on time. The loosest error of a full run is FiPy's on 32³.
-    """
-    worst = max(rows, key=lambda row: row.l1_error)
-    bound = 0.8 if quick else 0.3
-    assert worst.l1_error <= bound, f"{worst.solver}: L1 error {worst.l1_error:.2e}"
-    best = min(row.l1_error for row in rows if row.solver.startswith("drift_kick"))
-    bound = 2e-2 if quick else 1e-5
-    assert best <= bound, f"the best drift_kick has an L1 error of {best:.2e}"
+def steps(arguments: argparse.Namespace) -> Iterator[Step]:
+    """Everything that was asked for."""
+    chosen = arguments.part or ("noises", *STUDIES)
+    if "noises" in chosen:
+        yield from noise_steps(arguments)
+    for part, script in STUDIES.items():
+        if part in chosen:
+            done = path_of(part, arguments.out, quick=arguments.quick).exists()
+            yield Step(script, (), done)
 
 
-def write(
-    path: Path,
-    arguments: argparse.Namespace,
-    rows: list[Any],
-    verdicts: list[Any],
-    machine: Any,
-    rates: list[Any],
-) -> None:
-    """Write all numbers of the run, with what is needed to repeat it."""
-    import reference
-    import report
-
-    content = {
-        "date": datetime.now(UTC).isoformat(timespec="seconds"),
-        "s": arguments.s,
-        "threads": arguments.threads,
-        "versions": installed_versions(),
-        "reference": reference.QUICK if arguments.quick else reference.FINE,
-        "machine": machine.to_dict(),
-        "rows": [vars(row) for row in rows],
-        "aims": verdicts,
-        "kernels": report.kernel_records(rates, machine),
-    }
-    report.write_json(path, content)
+def call(script: str, *options: str) -> bool:
+    """Run a script; whether it ended well."""
+    print(f"== {script} {' '.join(options)}".rstrip(), flush=True)
+    command = [sys.executable, str(HERE / script), *options]
+    return subprocess.run(command, check=False).returncode == 0
 
 
 def main() -> None:
-    """Solve, print, write."""
+    """Run what was asked for, print the tables, draw the figures."""
     arguments = parse()
-    set_threads(arguments.threads)
-    import reference
-    import report
-    from kernels import measure_kernels
-    from machine import measure_machine
-    from timing import keep_memory
-
-    keep_memory()
-    quick = arguments.quick
-    exact = reference.load(arguments.s, quick=quick)
-    machine = measure_machine(quick=quick)
-    results = solve_ours(arguments.s, quick=quick)
-    for name in PEERS if arguments.peers is None else arguments.peers:
-        results += solve_peer(name, arguments.s, quick=quick)
-    rows = [report.make_row(result, exact) for result in results]
-    verdicts = report.judge_all(rows) if arguments.s == 1.0 else []
-    rates = measure_kernels(quick=quick)
-    report.print_table(rows)
-    print()
-    report.print_aims(verdicts)
-    print(f"\n{machine}")
-    report.print_kernels(rates, machine)
-    stem = "quick" if quick else f"benchmark-s{arguments.s:g}"
-    write(arguments.out / f"{stem}.json", arguments, rows, verdicts, machine, rates)
-    report.draw(rows, arguments.s, arguments.out / f"{stem}.png")
-    print(f"\nwritten: {arguments.out / stem}.json and .png")
-    check(rows, quick=quick)
+    common = ["--out", str(arguments.out), *(["--quick"] if arguments.quick else [])]
+    failed = [
+        f"{step.script} {' '.join(step.options)}".rstrip()
+        for step in steps(arguments)
+        if not (arguments.resume and step.done)
+        and not call(step.script, *step.options, *common)
+    ]
+    for script in ("tables.py", "figures.py"):
+        if not call(script, *common):
+            failed.append(script)
+    if failed:
+        sys.exit(f"failed: {'; '.join(failed)}")
+    if arguments.out == FOLDER and not arguments.quick:
+        print("docs/benchmarks.md shows these numbers: refresh it with page.py")
 
 
 if __name__ == "__main__":

@@ -13,6 +13,8 @@ from typing import Any, NamedTuple, Self
 M_TRIM_THRESHOLD = -1
 M_MMAP_THRESHOLD = -3
 LARGEST_KEPT = 2**30
+# A solve of a peer that takes more CPU seconds than this is made once.
+ONCE_ABOVE = 5.0
 
 
 def keep_memory() -> bool:
@@ -60,7 +62,10 @@ class Measured(NamedTuple):
 
 
 def measure(
-    call: Callable[[], Any], samples: int = 7, at_least: float = 0.03
+    call: Callable[[], Any],
+    samples: int = 7,
+    at_least: float = 0.03,
+    once_above: float = float("inf"),
 ) -> Measured:
     """CPU and elapsed seconds per call, each the median over `samples`.
 
@@ -72,9 +77,13 @@ def measure(
     at_least : float
         A sample repeats the call until this many CPU seconds are spent, so that the
         clock's resolution and one interrupt do not matter.
+    once_above : float
+        A first call that takes more CPU seconds than this is the only sample.
     """
     with Stopwatch() as trial:
         value = call()
+    if trial.cpu > once_above:
+        return Measured(trial.cpu, trial.wall, value)
     n_calls = max(1, round(at_least / max(trial.cpu, 1e-6)))
     watches = []
     for _ in range(samples):

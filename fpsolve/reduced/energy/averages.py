@@ -11,6 +11,7 @@ from numpy.polynomial import Chebyshev
 from numpy.polynomial.legendre import leggauss
 from numpy.typing import ArrayLike, NDArray
 
+from fpsolve._arrays import check_finite_numbers
 from fpsolve.reduced.energy.well import Well
 
 __all__ = ["OrbitAverages"]
@@ -98,9 +99,11 @@ class OrbitAverages:
         for end in (start, right):
             y, _, ratio, root, weights = self._nodes(e, end)
             r, sine = np.exp(y), np.sign(g)[:, None] * ratio
-            out, back = f(r, np.arctan2(sine, root)), f(r, np.arctan2(sine, -root))
+            out, back = (
+                observed(f, r, np.arctan2(sine, cosine)) for cosine in (root, -root)
+            )
             ds = weights * r / root
-            total += (0.5 * (np.asarray(out) + np.asarray(back)) * ds).sum(axis=1)
+            total += (0.5 * (out + back) * ds).sum(axis=1)
             period += ds.sum(axis=1)
         return np.asarray(total / period)
 
@@ -218,3 +221,14 @@ def _running_mean(f: Chebyshev) -> Chebyshev:
 
 def _interpolated(f: Function, degree: int) -> Chebyshev:
     return Chebyshev.interpolate(f, degree, domain=[0.0, _NEAR_THE_CIRCLE])
+
+
+def observed(f: OfOrbit, r: Array, beta: Array) -> Array:
+    """Values of f on the orbits; ValueError unless elementwise and finite."""
+    values = check_finite_numbers("f", f(r, beta))
+    if values.shape not in ((), r.shape):
+        raise ValueError(
+            f"`f` must work elementwise, got shape {values.shape} for arguments of "
+            f"shape {r.shape}."
+        )
+    return values

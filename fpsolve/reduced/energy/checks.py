@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from fpsolve._arrays import check_numbers
+
 __all__ = ["check_energies"]
 
 # How far beyond g_max rounding may put an energy.
@@ -15,7 +17,7 @@ def check_energies(
     name: str, g: ArrayLike, g_max: float, signed: bool = False
 ) -> NDArray[np.float64]:
     """Return energies as float64, at most g_max; ValueError where one lies outside."""
-    energies = np.asarray(g, dtype=np.float64)
+    energies = check_numbers(name, g)
     size = np.abs(energies) if signed else energies
     inside = (size >= 0) & (size <= g_max * (1.0 + _ROUNDING))
     if not inside.all():

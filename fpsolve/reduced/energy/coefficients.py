@@ -8,7 +8,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from fpsolve._checks import check_integer, check_positive, check_real
+from fpsolve._checks import check_call, check_integer, check_positive, check_real
 from fpsolve.potentials import Potential
 from fpsolve.reduced.energy.averages import OrbitAverages
 from fpsolve.reduced.energy.checks import check_energies
@@ -18,6 +18,8 @@ from fpsolve.reduced.energy.well import Well
 __all__ = ["Coefficients"]
 
 Array = NDArray[np.float64]
+
+_MOST_POINTS = 10**7
 
 
 class Coefficients:
@@ -87,7 +89,7 @@ class Coefficients:
             If g = 0, whose orbit goes to infinity and never comes back, or g lies
             outside [-g_max, g_max].
         """
-        n_points = check_integer("n_points", n_points, at_least=2)
+        n_points = check_integer("n_points", n_points, 2, _MOST_POINTS)
         energy = float(check_energies("g", check_real("g", g), self.g_max, signed=True))
         if energy == 0:
             raise ValueError(
@@ -126,6 +128,7 @@ class Coefficients:
                 f"{energies[(size == 0) | (size >= self.g_max)].flat[0]:g}; at ±g_max "
                 "the orbit is one point (r, β)."
             )
+        check_call("f", f, "f(r, beta)")
         means = self._averages.mean(f, energies.ravel())
         return means.reshape(energies.shape)
 

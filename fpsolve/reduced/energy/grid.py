@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from fpsolve._checks import check_integer
+from fpsolve._checks import check_flag, check_integer
 from fpsolve.reduced.energy.averages import OrbitAverages
 from fpsolve.reduced.energy.checks import check_energies
 
@@ -52,6 +52,7 @@ class EnergyGrid:
                 f"`n_cells` must be at most {_MOST_CELLS}, got {n_cells}: more cells "
                 "have smaller masses at the ends than rounding allows."
             )
+        signed = check_flag("signed", signed)
         if signed and n_cells % 2:
             raise ValueError(
                 f"`n_cells` must be even on a signed grid, got {n_cells}: zero must be "

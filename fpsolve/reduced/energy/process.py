@@ -7,17 +7,20 @@ from collections.abc import Callable, Iterable, Mapping
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from fpsolve._blas import one_blas_thread
+from fpsolve._checks import check_flag
 from fpsolve.errors import RunInterrupted
 from fpsolve.progress import ProgressCallback, reporting
+from fpsolve.provenance import Stopwatch
 from fpsolve.reduced.energy.coefficients import Coefficients
 from fpsolve.reduced.energy.grid import EnergyGrid
 from fpsolve.reduced.energy.passage import Passage
 from fpsolve.reduced.energy.sampling import EnergyPaths, sample_energies
 from fpsolve.reduced.energy.solution import EnergySolution
 from fpsolve.reduced.energy.spectrum import EnergySpectrum, energy_spectrum
-from fpsolve.reduced.energy.start import starting_masses
+from fpsolve.reduced.energy.start import masses_of, starting_masses
 from fpsolve.reduced.evolution import Relaxation, relax, relax_extrapolated
-from fpsolve.schedule import make_schedule
+from fpsolve.schedule import checked_stops, make_schedule
 
 __all__ = ["EnergyProcess"]
 
@@ -81,6 +84,7 @@ class EnergyProcess(Coefficients):
         """
         return self.spectrum(n, family).eigenvalues
 
+    @one_blas_thread()
     def spectrum(self, n: int, family: str = "even") -> EnergySpectrum:
         """`eigenvalues` with error estimates and eigenfunctions."""
         return energy_spectrum(self._averages, self.noise, n, family)
@@ -99,6 +103,7 @@ class EnergyProcess(Coefficients):
         """Cells of |G| on [0, g_max], or of signed G, for `solve`; see `EnergyGrid`."""
         return EnergyGrid(self._averages, n_cells, signed)
 
+    @one_blas_thread()
     def solve(
         self,
         start: Callable[[Array], ArrayLike] | ArrayLike,
@@ -153,18 +158,32 @@ class EnergyProcess(Coefficients):
             After Ctrl-C; `solution` is what was recorded, or the finished run at ds.
         """
         self._check_grid(grid)
+        save_at = None if save_at is None else checked_stops(save_at)
         schedule = make_schedule(s_span, ds, save_at, record_every)
+        start = masses_of(start, grid)
         masses = starting_masses(start, grid)
         generator = grid.generator(self.noise)
         arguments = (generator, masses, grid.equilibrium, schedule)
+        run = {
+            "s_span": [float(s) for s in s_span], "ds": float(ds), "save_at": save_at,
+            "method": method, "extrapolate": extrapolate, "record_every": record_every,
+        }  # fmt: skip
+        watch = Stopwatch()
 
         def solution(
-            found: Relaxation, errors: Mapping[str, Array] | None
+            found: Relaxation,
+            errors: Mapping[str, Array] | None,
+            status: str = "finished",
         ) -> EnergySolution:
             series = {name: getattr(found, name) for name in _SERIES}
-            law = found.saved_s, found.saved
-            return EnergySolution(self, grid, method, schedule.ds, series, errors, *law)
+            n_steps = schedule.n_steps * (3 if extrapolate else 1)
+            provenance = {**watch.provenance(n_steps), "run": run}
+            return EnergySolution(
+                self, grid, method, schedule.ds, series, errors, found.saved_s,
+                found.saved, provenance, start, status,
+            )  # fmt: skip
 
+        extrapolate = check_flag("extrapolate", extrapolate)
         with reporting(progress) as report:
             try:
                 if not extrapolate:
@@ -174,8 +193,10 @@ class EnergyProcess(Coefficients):
                     *relax_extrapolated(*arguments, method=method, report=report)
                 )
             except RunInterrupted as interrupt:
-                raise RunInterrupted(solution(interrupt.solution, None)) from None
+                partial = solution(interrupt.solution, None, "interrupted")
+                raise RunInterrupted(partial) from None
 
+    @one_blas_thread()
     def sample(
         self,
         n_paths: int,

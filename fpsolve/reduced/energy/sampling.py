@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
@@ -9,7 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from fpsolve._checks import check_integer
+from fpsolve._checks import check_integer, check_one_of, check_real
+from fpsolve.memory import check_memory
 from fpsolve.reduced.energy.averages import OrbitAverages
 from fpsolve.reduced.energy.checks import check_energies
 from fpsolve.reduced.energy.grid import EnergyGrid
@@ -65,12 +67,13 @@ def sample_energies(
     method: str,
 ) -> EnergyPaths:
     """Sample (15); see `EnergyProcess.sample`."""
-    if method not in METHODS:
-        known = ", ".join(repr(name) for name in METHODS)
-        raise ValueError(f"`method` must be one of {known}, got {method!r}.")
+    check_one_of("method", method, METHODS)
     n_paths = check_integer("n_paths", n_paths, at_least=1)
     seed = check_integer("seed", seed, at_least=0)
-    schedule = make_schedule((0.0, s_end), ds, save_at)
+    s_end = check_real("s_end", s_end)
+    schedule = make_schedule((0.0, s_end), ds, save_at, record_every=sys.maxsize)
+    required = n_paths * 8 * (len(schedule.saves) + 8)
+    check_memory(required, None, "sample fewer paths, save less often")
     generator = np.random.Generator(np.random.Philox(seed))
     g = starting_energies(averages, n_paths, initial, generator)
     step = METHODS[method](averages, noise, schedule.ds)

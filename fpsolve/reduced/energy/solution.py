@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -39,6 +40,12 @@ class EnergySolution:
     saved_s : ndarray, shape (n_saved,)
     masses : ndarray, shape (n_saved, n)
         Masses of the n cells.
+    provenance : dict
+        Versions, date, times, number of steps; `run` holds the arguments of `solve`.
+    initial_masses : ndarray, shape (n,), or None
+        Masses of the start as they were given, of any sum.
+    status : str
+        "finished" or "interrupted".
     """
 
     process: Any
@@ -49,6 +56,9 @@ class EnergySolution:
     errors: Mapping[str, Array] | None
     saved_s: Array
     masses: Array
+    provenance: dict[str, Any] = field(default_factory=dict)
+    initial_masses: Array | None = None
+    status: str = "finished"
 
     @property
     def s(self) -> Array:
@@ -89,9 +99,15 @@ class EnergySolution:
 
     def to_xarray(self) -> xarray.Dataset:
         """Labelled Dataset: density (s, g), series over step, parameters."""
-        from fpsolve.io.energy import energy_dataset
+        from fpsolve.io import to_xarray
 
-        return energy_dataset(self)
+        return to_xarray(self)
+
+    def save(self, path: str | Path, engine: str | None = None) -> Path:
+        """Write the solution to netCDF, or to zarr for a path that ends in .zarr."""
+        from fpsolve.io import save
+
+        return save(self, path, engine=engine)
 
     def __repr__(self) -> str:
         return (

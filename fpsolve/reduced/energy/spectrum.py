@@ -22,6 +22,8 @@ FAMILIES = ("even", "odd")
 _DEGREE, _DEGREE_PER_EIGENVALUE, _COARSER = 20, 1, 4
 # What rounding leaves of an eigenvalue, relative.
 _ROUNDING = 5e-13
+# Matrices of that size still take seconds only.
+_MOST_EIGENVALUES = 1000
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -103,7 +105,7 @@ def energy_spectrum(
     TypeError
         If n is not an integer.
     """
-    n = check_integer("n", n, at_least=1)
+    n = check_integer("n", n, 1, _MOST_EIGENVALUES)
     if family not in FAMILIES:
         raise ValueError(f"`family` must be 'even' or 'odd', got {family!r}.")
     elements = Elements.of(averages, _DEGREE + _DEGREE_PER_EIGENVALUE * n)

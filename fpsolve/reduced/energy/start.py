@@ -9,10 +9,11 @@ import numpy as np
 from numpy.polynomial.legendre import leggauss
 from numpy.typing import ArrayLike, NDArray
 
+from fpsolve._arrays import check_numbers
 from fpsolve.reduced.energy.checks import check_energies
 from fpsolve.reduced.energy.grid import EnergyGrid
 
-__all__ = ["starting_masses"]
+__all__ = ["masses_of", "starting_masses"]
 
 Array = NDArray[np.float64]
 
@@ -33,17 +34,7 @@ def starting_masses(
     ValueError
         If values are negative or not finite, have no mass, or do not fit the grid.
     """
-    if callable(start):
-        masses = _of_density(start, grid)
-    elif np.ndim(start) == 0:
-        masses = _of_energy(start, grid)
-    else:
-        masses = np.asarray(start, dtype=np.float64)
-        if masses.shape != (grid.n_cells,):
-            raise ValueError(
-                f"`start` must have one mass for each of {grid.n_cells} cells, got "
-                f"shape {masses.shape}; use `grid.histogram` for sampled energies."
-            )
+    masses = masses_of(start, grid)
     total = float(masses.sum())
     if not (masses.min() >= 0 and 0 < total < math.inf):
         raise ValueError(
@@ -53,10 +44,32 @@ def starting_masses(
     return masses / total
 
 
+def masses_of(
+    start: Callable[[Array], ArrayLike] | ArrayLike, grid: EnergyGrid
+) -> Array:
+    """Masses of the cells as they come, of any sum."""
+    if callable(start):
+        return _of_density(start, grid)
+    if np.ndim(start) == 0:
+        return _of_energy(start, grid)
+    masses = check_numbers("start", start)
+    if masses.shape != (grid.n_cells,):
+        raise ValueError(
+            f"`start` must have one mass for each of {grid.n_cells} cells, got shape "
+            f"{masses.shape}; use `grid.histogram` for sampled energies."
+        )
+    return masses
+
+
 def _of_density(density: Callable[[Array], ArrayLike], grid: EnergyGrid) -> Array:
     half = grid.widths[:, None] / 2
     points = grid.faces[:-1, None] + half * (_NODES + 1.0)
-    values = np.broadcast_to(density(points), points.shape)
+    values = check_numbers("start", density(points))
+    if values.shape not in ((), points.shape):
+        raise ValueError(
+            f"`start` must work elementwise, got shape {values.shape} for energies of "
+            f"shape {points.shape}."
+        )
     return np.asarray((values * half) @ _WEIGHTS)
 
 

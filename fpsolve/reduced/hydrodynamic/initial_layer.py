@@ -7,6 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from fpsolve._arrays import check_finite_numbers
 from fpsolve._checks import check_non_negative, check_positive
 from fpsolve.grids import PhaseSpaceGrid
 from fpsolve.planes import PlaneGrid
@@ -55,7 +56,7 @@ class InitialLayer:
 
     def __init__(self, p0: Array, grid: PhaseSpaceGrid, noise: float) -> None:
         self.plane = PlaneGrid.of(grid)
-        self.p0, self.grid = grid.check(p0, "p0"), grid
+        self.p0, self.grid = checked_start(p0, grid), grid
         self.noise = check_positive("noise", noise)
         self.density_at_start = self.p0.sum(axis=2) * grid.spacing[2]
         self.displaced = 2.0 / self.noise**2 * self._divergence()
@@ -97,3 +98,11 @@ class InitialLayer:
             change = np.diff(through, axis=0) / self.grid.spacing[axis]
             total += np.moveaxis(change, 0, axis)
         return total
+
+
+def checked_start(p0: Array, grid: PhaseSpaceGrid) -> Array:
+    """The density at the start, on the grid, finite and with mass."""
+    density = check_finite_numbers("p0", grid.check(p0, "p0"))
+    if not density.sum() > 0:
+        raise ValueError(f"`p0` must have positive mass, got {density.sum():g}.")
+    return density

@@ -9,6 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from fpsolve import diagnostics
+from fpsolve._blas import one_blas_thread
+from fpsolve._checks import check_flag, check_tolerance
 from fpsolve.errors import DomainTooSmallError
 from fpsolve.grids import PhaseSpaceGrid
 from fpsolve.models import LayDownModel
@@ -25,6 +27,7 @@ from fpsolve.reduced.hydrodynamic.solution import (
     HydrodynamicSteadyState,
 )
 from fpsolve.reduced.hydrodynamic.spectrum import HydrodynamicSpectrum, spectrum_of
+from fpsolve.schedule import checked_stops
 
 __all__ = ["HydrodynamicLimit"]
 
@@ -98,6 +101,7 @@ class HydrodynamicLimit:
         plane = plane_of(grid)
         return generator(self._phi.value(*plane.mesh()), plane.spacing, self.epsilon)
 
+    @one_blas_thread()
     def steady_state(
         self, grid: PlaneGrid | PhaseSpaceGrid, *, boundary_tolerance: float = 1e-3
     ) -> HydrodynamicSteadyState:
@@ -111,6 +115,7 @@ class HydrodynamicLimit:
             If more than `boundary_tolerance` of the mass lies in the outermost cells.
         """
         plane = plane_of(grid)
+        boundary_tolerance = check_tolerance("boundary_tolerance", boundary_tolerance)
         masses = gibbs_masses(self._phi.value(*plane.mesh()))
         residual = float(np.abs(self.generator(plane) @ masses.ravel()).sum())
         share = diagnostics.ring_share(masses)
@@ -120,6 +125,7 @@ class HydrodynamicLimit:
             )
         return HydrodynamicSteadyState(masses / plane.cell_area, residual, share, plane)
 
+    @one_blas_thread()
     def solve(
         self,
         P0: Start,
@@ -181,13 +187,14 @@ class HydrodynamicLimit:
             s_span=s_span,
             ds=ds,
             method=method,
-            save_at=save_at,
-            extrapolate=extrapolate,
+            save_at=None if save_at is None else tuple(checked_stops(save_at)),
+            extrapolate=check_flag("extrapolate", extrapolate),
             record_every=record_every,
             boundary_tolerance=boundary_tolerance,
         )
         return run.solve(self, plane, arguments, progress)
 
+    @one_blas_thread()
     def spectrum(
         self, grid: PlaneGrid | PhaseSpaceGrid, n_eigenvalues: int = 6
     ) -> HydrodynamicSpectrum:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from fpsolve._checks import check_finite, check_integer, check_non_negative
+from fpsolve._checks import check_integer, check_non_negative, check_pair
 from fpsolve.initial import checked_covariance
 from fpsolve.models import LayDownModel
 from fpsolve.potentials import QuadraticPotential
@@ -63,9 +63,7 @@ class OrnsteinUhlenbeckLimit:
                 "`potential` must be quadratic for an Ornstein-Uhlenbeck limit, got "
                 f"{model.potential!r}; use HydrodynamicLimit for others."
             )
-        if np.shape(mean) != (2,):
-            raise ValueError(f"`mean` must be two numbers, got {mean!r}.")
-        start = np.array([check_finite("mean", component) for component in mean])
+        start = np.array(check_pair("mean", mean))
         object.__setattr__(self, "model", model)
         object.__setattr__(self, "mean_at_start", start)
         object.__setattr__(self, "covariance_at_start", checked_covariance(variance))

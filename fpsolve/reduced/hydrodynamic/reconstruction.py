@@ -7,7 +7,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve._checks import check_positive
+from fpsolve._arrays import check_finite_numbers
+from fpsolve._checks import check_positive, shown
 from fpsolve.grids import PhaseSpaceGrid
 from fpsolve.planes import PlaneGrid
 from fpsolve.potentials import Potential
@@ -59,10 +60,10 @@ def reconstruct(
     ----------
     [KMW09]_, equation (18) and the one below (20); [BGKMW08]_.
     """
-    if order not in (0, 1):
-        raise ValueError(f"`order` must be 0 or 1, got {order!r}.")
+    if isinstance(order, bool) or order not in (0, 1):
+        raise ValueError(f"`order` must be 0 or 1, got {shown(order)}.")
     plane = PlaneGrid.of(grid)
-    density = plane.check(density, "P")
+    density = check_finite_numbers("P", plane.check(density, "P"))
     epsilon = 1.0 / check_positive("noise", noise) ** 2
     p = np.repeat(density[:, :, None] / (2 * math.pi), grid.shape[2], axis=2)
     if order == 0:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -37,10 +37,22 @@ class Arguments:
     s_span: tuple[float, float]
     ds: float
     method: str
-    save_at: Iterable[float] | None
+    save_at: Sequence[float] | None
     extrapolate: bool
     record_every: int
     boundary_tolerance: float
+
+    def to_dict(self) -> dict[str, Any]:
+        """All but the start, as JSON can hold them."""
+        return {
+            "s_span": [float(s) for s in self.s_span],
+            "ds": float(self.ds),
+            "method": self.method,
+            "save_at": None if self.save_at is None else list(map(float, self.save_at)),
+            "extrapolate": self.extrapolate,
+            "record_every": int(self.record_every),
+            "boundary_tolerance": float(self.boundary_tolerance),
+        }
 
 
 def checked_start(given: Any, plane: PlaneGrid) -> Array:
@@ -76,7 +88,9 @@ def solve(
     options["observables"] = observables(plane)
 
     def solution(
-        relaxation: Relaxation, errors: Mapping[str, Array] | None
+        relaxation: Relaxation,
+        errors: Mapping[str, Array] | None,
+        status: str = "finished",
     ) -> HydrodynamicSolution:
         n_steps = schedule.n_steps * (1 + 2 * (errors is not None))
         return HydrodynamicSolution(
@@ -88,7 +102,9 @@ def solve(
             saved_s=relaxation.saved_s,
             densities=relaxation.saved.reshape(-1, *plane.shape) / plane.cell_area,
             errors=None if errors is None else errors_of(errors),
-            provenance=watch.provenance(n_steps),
+            provenance={**watch.provenance(n_steps), "run": arguments.to_dict()},
+            initial_density=arguments.start,
+            status=status,
         )
 
     with reporting(progress) as options["report"]:
@@ -96,7 +112,8 @@ def solve(
         try:
             found = solution(*relaxed(problem, options, arguments.extrapolate))
         except RunInterrupted as interrupt:
-            raise RunInterrupted(solution(interrupt.solution, None)) from None
+            partial = solution(interrupt.solution, None, "interrupted")
+            raise RunInterrupted(partial) from None
     check_box(found, arguments.boundary_tolerance)
     return found
 
@@ -163,5 +180,5 @@ def check_box(solution: HydrodynamicSolution, tolerance: float) -> None:
             float(solution.series["s"][bad[0]]),
             tolerance,
         )
-        error.solution = solution
+        error.solution = replace(solution, status="failed")
         raise error

@@ -10,13 +10,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from fpsolve._arrays import check_numbers
 from fpsolve._checks import check_integer, check_positive
 from fpsolve.errors import NonFinitePathError
+from fpsolve.memory import check_memory
 from fpsolve.models import LayDownModel
 from fpsolve.planes import PlaneGrid
 from fpsolve.potentials import QuadraticPotential
 from fpsolve.reduced.hydrodynamic.ornstein_uhlenbeck import OrnsteinUhlenbeckLimit
 from fpsolve.schedule import Schedule, make_schedule
+from fpsolve.schedule import checked_stops as checked_series
 
 __all__ = ["METHODS", "HydrodynamicPaths", "sample"]
 
@@ -76,17 +79,36 @@ def sample(
     """See `HydrodynamicLimit.sample`."""
     n_paths = check_integer("n_paths", n_paths, at_least=2)
     method = checked_method(model, method)
-    rng = np.random.default_rng(seed)
-    xi = starts(initial, n_paths, rng)
+    s_end = check_positive("s_end", s_end)
+    if ds is not None:
+        ds = check_positive("ds", ds)
+    rng = np.random.default_rng(checked_seed(seed))
     if method == "exact":
         stops = checked_stops(s_end, save_at)
-        return _exact(model, xi, stops, rng)
+        check_room(n_paths, stops.size)
+        return _exact(model, starts(initial, n_paths, rng), stops, rng)
     if ds is None:
         raise ValueError(
             "`ds` must be given for the method 'heun', got None; its bias is of order "
             "ds², compare two steps."
         )
-    return _heun(model, xi, make_schedule((0.0, s_end), ds, save_at), rng)
+    schedule = make_schedule((0.0, s_end), ds, save_at)
+    check_room(n_paths, len(schedule.saves))
+    return _heun(model, starts(initial, n_paths, rng), schedule, rng)
+
+
+def checked_seed(seed: Any) -> Any:
+    """The seed; TypeError or ValueError unless it makes a generator."""
+    if isinstance(seed, np.random.SeedSequence):
+        return seed
+    return check_integer("seed", seed, at_least=0)
+
+
+def check_room(n_paths: int, n_saved: int) -> None:
+    """Raise MemoryLimitError if the positions do not fit into memory."""
+    # Those saved, and the current ones with their step.
+    required = n_paths * 2 * 8 * (n_saved + 4)
+    check_memory(required, None, "sample fewer paths, save less often")
 
 
 def checked_method(model: LayDownModel, method: str | None) -> str:
@@ -107,11 +129,11 @@ def checked_method(model: LayDownModel, method: str | None) -> str:
 
 def starts(initial: Any, n_paths: int, rng: np.random.Generator) -> Array:
     """Positions at s = 0, shape (n_paths, 2)."""
-    if isinstance(initial, tuple) and isinstance(initial[0], PlaneGrid):
+    if isinstance(initial, tuple) and initial and isinstance(initial[0], PlaneGrid):
         grid, density = initial
         return drawn(grid, density, n_paths, rng)
     given = initial(rng, n_paths) if callable(initial) else initial
-    xi = np.asarray(given, dtype=np.float64)
+    xi = check_numbers("initial", given)
     if xi.shape not in ((2,), (n_paths, 2)):
         raise ValueError(
             f"`initial` must be a point (xi1, xi2) or have the shape ({n_paths}, 2), "
@@ -142,8 +164,8 @@ def drawn(
 def checked_stops(s_end: float, save_at: Iterable[float] | None) -> Array:
     """Where paths are kept, ascending."""
     end = check_positive("s_end", s_end)
-    asked = (end,) if save_at is None else save_at
-    stops = np.array(sorted({float(s) for s in asked}))
+    asked = [end] if save_at is None else checked_series(save_at)
+    stops = np.array(sorted(set(asked)))
     if not (stops.size and stops[0] >= 0 and stops[-1] <= end):
         raise ValueError(
             f"`save_at` must hold numbers in [0, {end:g}], got {stops.tolist()}."

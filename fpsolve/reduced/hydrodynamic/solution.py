@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -57,7 +58,8 @@ class HydrodynamicSolution:
 
     Attributes
     ----------
-    limit : HydrodynamicLimit
+    limit : HydrodynamicLimit or None
+        None for a file whose potential was the user's own code.
     grid : PlaneGrid
     method : str
     ds : float
@@ -69,10 +71,14 @@ class HydrodynamicSolution:
         Richardson estimates in ds: "density_l1" (n_saved,) and one array for each
         series that depends on ds. The error of the grid comes in addition.
     provenance : dict
-        Versions, date, times, number of steps.
+        Versions, date, times, number of steps; `run` holds the arguments of `solve`.
+    initial_density : ndarray, shape (n1, n2), or None
+        𝒫0, from which the run began.
+    status : str
+        "finished", "interrupted" or "failed".
     """
 
-    limit: HydrodynamicLimit
+    limit: HydrodynamicLimit | None
     grid: PlaneGrid
     method: str
     ds: float
@@ -81,6 +87,8 @@ class HydrodynamicSolution:
     densities: Array
     errors: Mapping[str, Array] | None = None
     provenance: dict[str, Any] = field(default_factory=dict)
+    initial_density: Array | None = None
+    status: str = "finished"
 
     def __getattr__(self, name: str) -> Array:
         # Only called for names that are not fields; guards against half-built
@@ -121,6 +129,12 @@ class HydrodynamicSolution:
 
     def to_xarray(self) -> xarray.Dataset:
         """Labelled Dataset: densities (s, xi1, xi2), series over the steps."""
-        from fpsolve.io.hydrodynamic import to_xarray
+        from fpsolve.io import to_xarray
 
         return to_xarray(self)
+
+    def save(self, path: str | Path, engine: str | None = None) -> Path:
+        """Write the solution to netCDF, or to zarr for a path that ends in .zarr."""
+        from fpsolve.io import save
+
+        return save(self, path, engine=engine)

@@ -11,14 +11,15 @@ import numpy as np
 
 from fpsolve._checks import check_positive
 from fpsolve.errors import MemoryLimitError, ToleranceError
-from fpsolve.io.attributes import labels, to_json
+from fpsolve.io.attributes import labels, made_with, to_json
+from fpsolve.io.recipes import recipe
 from fpsolve.models import LayDownModel
 from fpsolve.potentials import Potential
-from fpsolve.provenance import versions
 from fpsolve.reduced.energy import EnergyProcess
 from fpsolve.spectral.bases import discretisation_for
 from fpsolve.spectral.sectors import Sector
 from fpsolve.spectral.spectrum import spectrum
+from fpsolve.studies.arguments import series_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -62,11 +63,18 @@ def small_noise_spectrum(
     ------
     ValueError, TypeError
         If the potential has no energy process or a noise is not positive.
+
+    References
+    ----------
+    [KMW09]_, equations (15) and (16).
     """
     import xarray as xr
 
     process = EnergyProcess(potential, 1.0)
-    amplitudes = np.unique([check_positive("noises", noise) for noise in noises])[::-1]
+    listed = [check_positive("noises", noise) for noise in series_of(noises)]
+    if not listed:
+        raise ValueError("`noises` must hold at least one noise, got none.")
+    amplitudes = np.unique(listed)[::-1]
     found = {family: process.spectrum(2, family) for family in FAMILIES}
     # The even family begins with the constants, which do not decay.
     places = {"even": 1, "odd": 0}
@@ -93,8 +101,11 @@ def small_noise_spectrum(
         "potential": to_json(potential.to_dict()),
         "formula": potential.formula,
         "tolerance": tolerance,
-        "versions": to_json(versions()),
-    }
+        **made_with(),
+        **recipe("small_noise_spectrum", {
+            "potential": potential, "noises": amplitudes, "tolerance": tolerance,
+        }),
+    }  # fmt: skip
     return xr.Dataset(variables, coordinates, attributes)
 
 

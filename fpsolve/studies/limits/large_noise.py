@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from fpsolve._checks import check_finite, check_positive
 from fpsolve.errors import RunInterrupted
 from fpsolve.io.attributes import to_json
+from fpsolve.io.recipes import recipe
 from fpsolve.models import LayDownModel
 from fpsolve.paths import GaussianLaw
 from fpsolve.potentials import Potential, QuadraticPotential
@@ -20,6 +21,7 @@ from fpsolve.reduced.hydrodynamic.effective_potential import (
     EffectivePotential,
     slope_of,
 )
+from fpsolve.studies.arguments import names_of, series_of
 from fpsolve.studies.limits.large_noise_cases import (
     PARTS,
     deviation_of,
@@ -165,6 +167,11 @@ def large_noise_limit(
         "slow_length": float(slow_length), "belt_speed_scale": pull,
         "fixed_speed": float(fixed_speed), "p0": to_json(law.to_dict()),
         "quick": int(quick),
+        **recipe("large_noise_limit", {
+            "potential": potential, "noises": amplitudes, "slow_length": slow_length,
+            "belt_speed_scale": pull, "fixed_speed": fixed_speed, "p0": law,
+            "parts": chosen, "quick": quick,
+        }),
     }  # fmt: skip
     try:
         found = sweep(
@@ -218,7 +225,7 @@ def checked_noises(potential: Potential, noises: Iterable[float]) -> Array:
     # Says what is wrong with a potential that is none.
     LayDownModel(potential, 1.0)
     require_confining(potential)
-    listed = [check_positive("noises", noise) for noise in noises]
+    listed = [check_positive("noises", noise) for noise in series_of(noises)]
     if not listed:
         raise ValueError("`noises` must hold at least one noise, got none.")
     return np.unique(listed)
@@ -281,7 +288,7 @@ def checked_parts(
         and (quadratic or part != "fixed_speed")
         and (quadratic or potential.isotropic or part != "gap")
     ]
-    chosen = possible if parts is None else list(parts)
+    chosen = possible if parts is None else names_of(parts)
     unknown = [part for part in chosen if part not in possible]
     if unknown or not chosen:
         raise ValueError(

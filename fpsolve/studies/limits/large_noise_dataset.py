@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
@@ -10,9 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve.io.attributes import labels, to_json
+from fpsolve.io.attributes import labels, made_with, to_json
 from fpsolve.potentials import Potential, QuadraticPotential
-from fpsolve.provenance import versions
 from fpsolve.studies.limits.orders import fitted_order, observed_orders
 from fpsolve.studies.limits.quantities import Quantity, quantities_of
 from fpsolve.studies.rates.sweep import Case
@@ -54,7 +52,7 @@ def large_noise_dataset(
             "potential": to_json(potential.to_dict()),
             "formula": potential.formula,
             **about,
-            "versions": json.dumps(versions()),
+            **made_with(),
         },
     )
 

@@ -9,6 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.stats import linregress
 
+from fpsolve._arrays import check_finite_numbers, check_numbers
+
 __all__ = ["FittedOrder", "fitted_order", "observed_orders"]
 
 Array = NDArray[np.float64]
@@ -83,6 +85,10 @@ def fitted_order(
         What the error cannot be told from, one number or one for each point: points
         below three times it are left out.
 
+    Returns
+    -------
+    FittedOrder
+
     Raises
     ------
     ValueError
@@ -106,8 +112,8 @@ def fitted_order(
 
 def _logarithms(epsilon: ArrayLike, error: ArrayLike) -> tuple[Array, Array]:
     """ln ε and ln error, NaN where an error is not positive."""
-    epsilon = np.asarray(epsilon, dtype=np.float64)
-    values = np.asarray(error, dtype=np.float64)
+    epsilon = check_finite_numbers("epsilon", epsilon)
+    values = check_numbers("error", error)
     if epsilon.ndim != 1 or epsilon.shape != values.shape:
         raise ValueError(
             "`epsilon` and `error` must be sequences of the same length, got shapes "

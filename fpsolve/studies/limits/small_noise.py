@@ -11,9 +11,11 @@ from numpy.typing import NDArray
 
 from fpsolve._checks import check_finite, check_integer, check_positive
 from fpsolve.errors import RunInterrupted
+from fpsolve.io.recipes import recipe
 from fpsolve.paths import GaussianLaw
 from fpsolve.potentials import Potential
 from fpsolve.reduced.energy import EnergyProcess
+from fpsolve.studies.arguments import series_of
 from fpsolve.studies.limits.small_noise_case import small_noise_case
 from fpsolve.studies.limits.small_noise_dataset import small_noise_dataset
 from fpsolve.studies.rates.sweep import SweepProgress, sweep
@@ -104,7 +106,12 @@ def small_noise_limit(
     [KMW09]_, section 3.1.2, equations (13) to (16).
     """
     amplitudes = _checked_noises(potential, noises)
-    scales = np.array([check_finite("belt_speed_scales", w) for w in belt_speed_scales])
+    scales = np.array(
+        [
+            check_finite("belt_speed_scales", w)
+            for w in series_of(belt_speed_scales, "belt_speed_scales")
+        ]
+    )
     law = _default_start(potential) if p0 is None else _checked_start(p0)
     options = {
         "law": law,
@@ -122,6 +129,11 @@ def small_noise_limit(
         for noise in amplitudes
     ]  # fmt: skip
     shape = scales, amplitudes
+    again = recipe("small_noise_limit", {
+        "potential": potential, "noises": amplitudes, "belt_speed_scales": scales,
+        "p0": law, "quick": quick,
+        **{name: options[name] for name in ("slow_length", "ds", "n_paths", "seed")},
+    })  # fmt: skip
     try:
         found = sweep(
             small_noise_case, cases, client=client, workers=workers,
@@ -129,14 +141,14 @@ def small_noise_limit(
         )  # fmt: skip
     except RunInterrupted as interrupt:
         partial = small_noise_dataset(potential, *shape, interrupt.solution, options)
-        raise RunInterrupted(partial) from None
-    return small_noise_dataset(potential, *shape, found, options)
+        raise RunInterrupted(partial.assign_attrs(again)) from None
+    return small_noise_dataset(potential, *shape, found, options).assign_attrs(again)
 
 
 def _checked_noises(potential: Potential, noises: Iterable[float]) -> Array:
     """The noises, descending: the limit is at the end."""
     EnergyProcess(potential, 1.0)
-    listed = [check_positive("noises", noise) for noise in noises]
+    listed = [check_positive("noises", noise) for noise in series_of(noises)]
     if not listed:
         raise ValueError("`noises` must hold at least one noise, got none.")
     return np.unique(listed)[::-1]

@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve.io.attributes import labels, to_json
+from fpsolve.io.attributes import labels, made_with, to_json
 from fpsolve.potentials import Potential
-from fpsolve.provenance import versions
 from fpsolve.studies.limits.energy_law import N_FUNCTIONS
 from fpsolve.studies.limits.orders import observed_orders
 from fpsolve.studies.rates.sweep import Case
@@ -104,5 +103,5 @@ def _attributes(potential: Potential, options: Mapping[str, Any]) -> dict[str, A
         "formula": potential.formula,
         "expected_order": 1.0,
         "options": to_json(described),
-        "versions": to_json(versions()),
+        **made_with(),
     }

@@ -10,9 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import nnls
 
-from fpsolve.io.attributes import labels, to_json
+from fpsolve.io.attributes import labels, made_with, to_json
 from fpsolve.potentials import Potential
-from fpsolve.provenance import versions
 from fpsolve.studies.rates.bounds import (
     averaging_bound,
     hypocoercive_bound,
@@ -131,7 +130,7 @@ def rates_dataset(
             "p0": to_json(about["p0"].to_dict()),
             "quick": int(about["quick"]),
             "settings": json.dumps(about["settings"]),
-            "versions": json.dumps(versions()),
+            **made_with(),
         },
     )  # fmt: skip
 
@@ -266,7 +265,7 @@ def spectrum_dataset(found: Spectrum) -> xr.Dataset:
         "gap": found.gap,
         "gap_error": found.gap_error,
         "truncation": json.dumps([int(number) for number in found.truncation]),
-        "versions": json.dumps(versions()),
+        **made_with(),
     }
     if found.essential is not None:
         attributes["essential"] = found.essential

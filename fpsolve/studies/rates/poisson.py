@@ -12,9 +12,10 @@ from numpy.typing import NDArray
 from scipy.sparse import block_array, csc_array
 from scipy.sparse.linalg import splu
 
-from fpsolve._checks import check_positive
-from fpsolve.models import LayDownModel
+from fpsolve._blas import one_blas_thread
+from fpsolve.models import LayDownModel, check_model
 from fpsolve.potentials import QuadraticPotential
+from fpsolve.spectral.quadratic import checked_tolerance
 from fpsolve.spectral.radial import RadialDiscretisation
 from fpsolve.spectral.radial_basis import radial_basis
 from fpsolve.spectral.sectors import Sector, Truncation
@@ -23,6 +24,7 @@ from fpsolve.spectral.tensor import (
     TensorStates,
     hermite_functions,
 )
+from fpsolve.studies.arguments import check_functions
 from fpsolve.studies.observables import Observable
 
 __all__ = ["AsymptoticVariances", "asymptotic_variances"]
@@ -62,6 +64,7 @@ class AsymptoticVariances:
     truncation: Truncation
 
 
+@one_blas_thread()
 def asymptotic_variances(
     model: LayDownModel,
     functions: Mapping[str, Observable],
@@ -93,7 +96,9 @@ def asymptotic_variances(
     ----------
     [KMW09]_, section 3.1.1: the limit of s times the square of the left side of (12).
     """
-    tolerance = check_positive("tolerance", tolerance)
+    check_model(model)
+    functions = check_functions(functions)
+    tolerance = checked_tolerance(tolerance)
     if not model.curve.fixed:
         raise ValueError(
             "`model` must have a fixed belt for asymptotic variances, got "

@@ -10,11 +10,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve._checks import check_positive
+from fpsolve._checks import check_flag, check_positive
 from fpsolve.errors import RunInterrupted
+from fpsolve.io.recipes import recipe
 from fpsolve.models import LayDownModel
 from fpsolve.paths import GaussianLaw
 from fpsolve.potentials import Potential, QuadraticPotential
+from fpsolve.spectral.spectrum import check_tolerance
+from fpsolve.studies.arguments import check_functions, names_of, series_of
 from fpsolve.studies.observables import Observable, default_observables
 from fpsolve.studies.rates.cases import PARTS, rate_case
 from fpsolve.studies.rates.dataset import rates_dataset
@@ -134,10 +137,21 @@ def rate_versus_noise(
     [KMW09]_, section 3.1.1, figure 5 and theorem 3.3.
     """
     amplitudes = _checked(potential, noises)
+    quick = check_flag("quick", quick)
+    if s_end is not None:
+        s_end = check_positive("s_end", s_end)
+    if functions is not None:
+        functions = check_functions(functions)
+    parts = None if parts is None else names_of(parts)
+    again = recipe("rate_versus_noise", {
+        "potential": potential, "noises": amplitudes, "p0": p0, "quick": quick,
+        "parts": parts, "functions": functions, "tolerance": tolerance,
+        "s_end": s_end,
+    })  # fmt: skip
     functions = dict(default_observables(potential) if functions is None else functions)
     p0 = _checked_start(DEFAULT_START if p0 is None else p0)
     settings = QUICK if quick else Settings()
-    gap = settings.gap if tolerance is None else check_positive("tolerance", tolerance)
+    gap = settings.gap if tolerance is None else check_tolerance(tolerance)
     chosen = _checked_parts(potential, parts)
     options = _options(p0, functions, settings, gap, s_end)
     cases = [
@@ -157,8 +171,8 @@ def rate_versus_noise(
         )  # fmt: skip
     except RunInterrupted as interrupt:
         partial = rates_dataset(potential, amplitudes, interrupt.solution, about)
-        raise RunInterrupted(partial) from None
-    return rates_dataset(potential, amplitudes, found, about)
+        raise RunInterrupted(partial.assign_attrs(again)) from None
+    return rates_dataset(potential, amplitudes, found, about).assign_attrs(again)
 
 
 def _options(
@@ -188,7 +202,7 @@ def _checked(potential: Potential, noises: Iterable[float]) -> Array:
     require_confining(potential)
     poincare_constant(potential)
     remedy = "; without noise the density never forgets its start"
-    listed = [check_positive("noises", noise, remedy) for noise in noises]
+    listed = [check_positive("noises", noise, remedy) for noise in series_of(noises)]
     if not listed:
         raise ValueError("`noises` must hold at least one noise, got none.")
     return np.unique(listed)
@@ -208,7 +222,7 @@ def _checked_parts(potential: Potential, parts: Iterable[str] | None) -> list[st
         for part in PARTS
         if part != "evolution" or isinstance(potential, QuadraticPotential)
     ]
-    chosen = possible if parts is None else list(parts)
+    chosen = possible if parts is None else names_of(parts)
     unknown = [part for part in chosen if part not in possible]
     if unknown or not chosen:
         raise ValueError(

@@ -13,6 +13,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from fpsolve._blas import one_blas_thread
+from fpsolve._checks import check_call, shown
 from fpsolve.errors import RunInterrupted
 from fpsolve.studies.rates.executors import executor_for, finished_tasks
 from fpsolve.studies.rates.store import CaseStore
@@ -98,7 +100,8 @@ def sweep(
     RunInterrupted
         After Ctrl-C; `solution` is the list of cases, the unfinished ones "pending".
     """
-    listed = [Case(dict(arguments), {}) for arguments in cases]
+    check_call("function", function, "function(**arguments)")
+    listed = [Case(dict(arguments), {}) for arguments in checked_cases(cases)]
     if not listed:
         raise ValueError("`cases` must hold at least one case, got none.")
     store = None if directory is None else CaseStore(Path(directory), function)
@@ -114,6 +117,18 @@ def sweep(
                 report(case)
         except KeyboardInterrupt:
             raise RunInterrupted(listed) from None
+    return listed
+
+
+def checked_cases(cases: Any) -> list[Mapping[str, Any]]:
+    """The cases as a list; TypeError unless each is a mapping of arguments."""
+    listed = list(cases) if isinstance(cases, Iterable) else [cases]
+    for case in listed:
+        if not isinstance(case, Mapping):
+            raise TypeError(
+                "`cases` must be a series of mappings of arguments, got "
+                f"{shown(case)} among them."
+            )
     return listed
 
 
@@ -148,6 +163,7 @@ def _outcomes(
             yield place, outcome if error is None else failure(error, float("nan"))
 
 
+@one_blas_thread()
 def run_case(function: Function, arguments: Mapping[str, Any]) -> dict[str, Any]:
     """Outcome of one case, whatever happens in it: the fields of a `Case`."""
     began = time.perf_counter()

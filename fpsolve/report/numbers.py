@@ -1,12 +1,17 @@
-"""Numbers with their errors."""
+"""Numbers as text, with their errors."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 
-__all__ = ["with_error"]
+import numpy as np
+
+__all__ = ["MOST_ROWS", "evenly", "formatted", "with_error"]
 
 MOST_DIGITS = 10
+# Rows that a table about a series has at most.
+MOST_ROWS = 11
 
 
 def with_error(value: float, error: float) -> str:
@@ -22,3 +27,14 @@ def with_error(value: float, error: float) -> str:
         return f"{value:.{digits}f}"
     last = f"{error:.{digits}f}" if error >= 1 else f"{error * 10**digits:.0f}"
     return f"{value:.{digits}f}({last})"
+
+
+def formatted(values: Iterable[float], form: str) -> list[str]:
+    """Return every number in that format."""
+    return [format(float(value), form) for value in values]
+
+
+def evenly(count: int) -> list[int]:
+    """Return at most `MOST_ROWS` places from first to last of so many."""
+    places = np.linspace(0, count - 1, min(count, MOST_ROWS))
+    return [int(place) for place in places.round()]

@@ -1,0 +1,28 @@
+"""Shows every matplotlib Figure that a block of a gallery script leaves in a variable.
+
+fpsolve's figures are not known to pyplot, where sphinx-gallery's own scraper looks.
+"""
+
+from matplotlib.figure import Figure
+from sphinx_gallery.scrapers import figure_rst
+
+_DOTS_PER_INCH = 150
+
+
+def _get_sg_image_scraper():
+    """Tell sphinx-gallery the scraper of this module, by the name it asks for."""
+    return scrape_figures
+
+
+def scrape_figures(block, block_vars, gallery_conf):
+    """Save the figures that are new since the last block; return their reST."""
+    names = block_vars["example_globals"]
+    shown = names.setdefault("__shown__", set())
+    found = {id(value): value for value in names.values() if isinstance(value, Figure)}
+    paths = []
+    for identity, figure in found.items():
+        if identity not in shown:
+            shown.add(identity)
+            paths.append(next(block_vars["image_path_iterator"]))
+            figure.savefig(paths[-1], dpi=_DOTS_PER_INCH)
+    return figure_rst(paths, gallery_conf["src_dir"])

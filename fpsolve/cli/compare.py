@@ -1,0 +1,118 @@
+"""`fpsolve compare`: two results of the same kind, number by number."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from fpsolve.cli.errors import FAILED, reported_errors
+from fpsolve.cli.run import NoFigures
+
+if TYPE_CHECKING:
+    from fpsolve.comparisons import Comparison, Difference
+
+__all__ = ["compare", "print_comparison"]
+
+First = Annotated[Path, typer.Argument(metavar="A", help="A result.")]
+Second = Annotated[
+    Path, typer.Argument(metavar="B", help="Another result of the same kind.")
+]
+Out = Annotated[
+    Path | None,
+    typer.Option(
+        help="Folder for the figure; by default that of B.", show_default=False
+    ),
+]
+Tolerance = Annotated[
+    float | None,
+    typer.Option(
+        metavar="R",
+        help="Let every variable differ by R times its largest value.",
+        show_default="none, the same bits",
+    ),
+]
+_MOST_ROWS = 15
+
+
+def compare(
+    a: First,
+    b: Second,
+    out: Out = None,
+    tolerance: Tolerance = None,
+    no_figures: NoFigures = False,
+) -> None:
+    """Compare two results: differences, their errors, parameters, environment.
+
+    Prints the variables that differ, the largest difference of each and where it is,
+    and writes a figure of them. The exit code is 0 if both are equal, or within the
+    tolerance, and 1 if they are not.
+    """
+    with reported_errors():
+        from fpsolve.comparisons import compare as compare_results
+
+        if tolerance is not None:
+            from fpsolve._checks import check_positive
+
+            check_positive("--tolerance", tolerance)
+        found = compare_results(a, b)
+        print_comparison(found)
+        if found.differing and not no_figures:
+            typer.echo(_draw(found, a, b, b.parent if out is None else out))
+        if tolerance is not None:
+            inside = "within" if found.within(tolerance) else "beyond"
+            typer.echo(f"{inside} {tolerance:g} of the largest value of each variable")
+        if not (found.equal or (tolerance and found.within(tolerance))):
+            raise typer.Exit(FAILED)
+
+
+def print_comparison(comparison: Comparison) -> None:
+    """Print the verdict, a row for every variable that differs, and what else does."""
+    from rich import box
+    from rich.console import Console
+    from rich.table import Table
+
+    from fpsolve.comparisons.wording import sections, verdict
+
+    console = Console(highlight=False, markup=False)
+    a, b = comparison.names
+    console.print(f"A = {a}, B = {b}: {comparison.kind}")
+    if comparison.differing:
+        table = Table(box=box.SIMPLE_HEAD)
+        for name in ("variable", "|B − A|", "relative", "at", "in errors"):
+            table.add_column(name, justify="left", no_wrap=name != "at")
+        for one in comparison.differing[:_MOST_ROWS]:
+            table.add_row(*_row(one))
+        console.print(table)
+        console.print("relative: to the largest |A|; in errors: of A and B together")
+    hidden = len(comparison.differing) - _MOST_ROWS
+    if hidden > 0:
+        console.print(f"and {hidden} more variables")
+    console.print(verdict(comparison), soft_wrap=True)
+    for title, entries in sections(comparison).items():
+        if entries:
+            console.print(f"{title}:")
+            for entry in entries:
+                console.print(f"  {entry}", soft_wrap=True)
+
+
+def _row(one: Difference) -> tuple[str, ...]:
+    from fpsolve.comparisons.wording import place_text
+
+    units = " σ" if one.statistical else ""
+    errors = "" if one.in_errors is None else f"{one.in_errors:.2g}{units}"
+    place = place_text(one)
+    return one.name, f"{one.largest:.3g}", f"{one.relative:.2g}", place, errors
+
+
+def _draw(comparison: Comparison, a: Path, b: Path, folder: Path) -> Path:
+    from fpsolve.io.atomic import atomic_path, made_folder
+    from fpsolve.plotting.differences import plot_comparison
+    from fpsolve.plotting.style import RESOLUTION, paper_style
+
+    made_folder(folder, "--out")
+    path = folder / f"{a.stem}-{b.stem}-difference.png"
+    with paper_style(), atomic_path(path) as draft:
+        plot_comparison(comparison).savefig(draft, dpi=RESOLUTION)
+    return path

@@ -1,0 +1,157 @@
+"""`fpsolve rerun`: compute a result again and compare."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from fpsolve.cli.errors import FAILED, INTERRUPTED, fail, reported_errors
+from fpsolve.cli.run import Threads
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from fpsolve.comparisons import Comparison
+
+__all__ = ["rerun"]
+
+File = Annotated[
+    Path, typer.Argument(metavar="FILE", help="Result of any command, or of `save`.")
+]
+Out = Annotated[Path, typer.Option(help="Folder for the new result.")]
+Workers = Annotated[
+    int | None,
+    typer.Option(
+        min=0, help="Processes of a study; 0 runs in this one.", show_default="CPUs"
+    ),
+]
+# Studies of many cases, which take `workers`.
+_SWEEPS = ("rate", "large-noise", "small-noise")
+# What a part of the paths has in common with all of them.
+_OF_EVERY_PATH = ("xi", "tau", "turns", "alpha", "start_xi", "start_tau", "start_turns")
+
+
+def rerun(
+    file: File,
+    out: Out = Path("rerun"),
+    threads: Threads = None,
+    workers: Workers = None,
+) -> None:
+    """Compute a result again with the parameters in its file, and compare.
+
+    Writes the new result under the same name and prints where both differ. The exit
+    code is 0 if they have the same bits, or differ by rounding only (below 1e-10 of
+    the largest value of each variable), as they may after a change of machine or of
+    versions; then those are named. Otherwise it is 1.
+    """
+    with reported_errors():
+        from fpsolve.cli.run import set_threads
+        from fpsolve.comparisons.reading import dataset_of, kind_of_dataset
+        from fpsolve.io.atomic import check_folder
+
+        check_folder(out, "--out")
+        old = dataset_of(file, "FILE")
+        kind = kind_of_dataset(old, "FILE")
+        status = str(old.attrs.get("status", "finished"))
+        target = _target(file, out, status)
+        set_threads(threads)
+        _announce(old, kind, status)
+        given = workers is not None and kind in _SWEEPS
+        options = {"workers": workers} if given else {}
+        _write(_repeat(file, kind, options), target)
+        typer.echo(target)
+        _judge(_compared(file, target), status)
+
+
+def _target(file: Path, out: Path, status: str) -> Path:
+    """Return where the new result goes; not where the old one is."""
+    stem = file.stem.removesuffix("-interrupted") if status != "failed" else file.stem
+    target = out / f"{stem}{file.suffix}"
+    if target.resolve() == file.resolve():
+        raise ValueError(
+            f"`--out` must not be the folder of the file, got `{out}`; the result "
+            "would take its place."
+        )
+    return target
+
+
+def _announce(old: xr.Dataset, kind: str, status: str) -> None:
+    from fpsolve.comparisons.reading import KINDS
+
+    about = old.attrs.get("command") or old.attrs.get("equation") or ""
+    typer.echo(f"repeating {KINDS[kind]}: {about}".rstrip(": "))
+    if status != "finished":
+        article = "an" if status == "interrupted" else "a"
+        typer.echo(f"the file holds {article} {status} run; the whole is repeated")
+
+
+def _repeat(file: Path, kind: str, options: dict[str, Any]) -> Any:
+    from fpsolve.errors import RunInterrupted
+    from fpsolve.rerunning import rerun as repeat
+
+    try:
+        with _bar(kind) as progress:
+            return repeat(file, **progress, **options)
+    except RunInterrupted:
+        fail("interrupted; nothing was written", INTERRUPTED)
+
+
+@contextmanager
+def _bar(kind: str) -> Iterator[dict[str, Any]]:
+    """The bar that suits what is repeated; spectra and tables have none."""
+    # Not `from fpsolve.cli.progress import`: a test replaces the bar in its module.
+    from fpsolve.cli import progress
+    from fpsolve.cli.rate import case_bar
+
+    if kind in _SWEEPS:
+        with case_bar(kind) as report:
+            yield {"progress": report}
+    elif kind in ("spectrum", "energy-tables", "small-noise-spectrum"):
+        yield {}
+    else:
+        with progress.progress_bar() as report:
+            yield {"progress": report}
+
+
+def _write(result: Any, target: Path) -> None:
+    import xarray as xr
+
+    from fpsolve.io import save
+    from fpsolve.io.atomic import made_folder
+    from fpsolve.io.writing import write_dataset
+
+    made_folder(target.parent, "--out")
+    if isinstance(result, xr.Dataset):
+        write_dataset(result, target)
+    else:
+        save(result, target)
+
+
+def _compared(file: Path, target: Path) -> Comparison:
+    from dataclasses import replace
+
+    from fpsolve.cli.compare import print_comparison
+    from fpsolve.comparisons import compare
+
+    found = replace(compare(file, target), names=("the file", "the new result"))
+    print_comparison(found)
+    return found
+
+
+def _judge(found: Comparison, status: str) -> None:
+    """Exit with 1 unless both are equal, or as equal as rounding lets them be."""
+    from fpsolve.comparisons.comparison import ROUNDING
+
+    if found.is_rounding:
+        return
+    if status == "interrupted":
+        common = [one for one in found.differences if "paths" not in found.kind
+                  or one.name in _OF_EVERY_PATH]  # fmt: skip
+        if all(one.within(ROUNDING) for one in common):
+            typer.echo("the part that both have is the same")
+            return
+    raise typer.Exit(FAILED)

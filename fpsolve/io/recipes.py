@@ -1,0 +1,123 @@
+"""How a study is repeated: the function and its arguments, as JSON in an attribute."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+
+from fpsolve.grids import PhaseSpaceGrid
+from fpsolve.io.attributes import to_json
+from fpsolve.io.laws import FORMULAS, law_from_formula
+from fpsolve.models import LayDownModel
+from fpsolve.planes import PlaneGrid
+from fpsolve.potentials import Potential, potential_from_dict
+
+__all__ = ["RECIPE", "UserCodeError", "read_recipe", "recipe"]
+
+# Name of the attribute.
+RECIPE = "repeat"
+# An object is a dictionary with one key, its kind; JSON has no other way to say it.
+_MARK = "$"
+_USER_CODE = f"{_MARK}user_code"
+_READERS: dict[str, Callable[[Any], Any]] = {
+    f"{_MARK}potential": potential_from_dict,
+    f"{_MARK}model": LayDownModel.from_dict,
+    f"{_MARK}grid": PhaseSpaceGrid.from_dict,
+    f"{_MARK}plane": PlaneGrid.from_dict,
+    f"{_MARK}law": law_from_formula,
+    f"{_MARK}seed": lambda seed: np.random.SeedSequence(
+        seed["entropy"], spawn_key=tuple(seed["spawn_key"])
+    ),
+}
+
+
+class UserCodeError(ValueError):
+    """An argument was a user's own code, which no file can hold.
+
+    Parameters
+    ----------
+    argument : str
+    description : str
+        What is known of it.
+    """
+
+    def __init__(self, argument: str, description: str) -> None:
+        super().__init__(f"`{argument}` was your own code, {description}")
+        self.argument, self.description = argument, description
+
+
+def recipe(function: str, arguments: Mapping[str, Any]) -> dict[str, str]:
+    """Return the attribute that says how to compute this again.
+
+    Parameters
+    ----------
+    function : str
+        Name by which `rerun` knows it.
+    arguments : mapping
+        Keywords; what only decides where it is computed is left out.
+    """
+    described = {name: _described(value) for name, value in arguments.items()}
+    return {RECIPE: to_json({"function": function, "arguments": described})}
+
+
+def read_recipe(text: str, given: Mapping[str, Any]) -> tuple[str, dict[str, Any]]:
+    """Return the function and its arguments, those that are given in their place.
+
+    Raises
+    ------
+    UserCodeError
+        If an argument that is not given was a user's own code.
+    ValueError, KeyError, TypeError
+        If the text is none that `recipe` wrote.
+    """
+    content = json.loads(text)
+    arguments = {
+        name: given[name] if name in given else _read(name, value)
+        for name, value in content["arguments"].items()
+    }
+    return str(content["function"]), {**arguments, **given}
+
+
+def _described(value: Any) -> Any:
+    """Return the value as JSON holds it."""
+    if isinstance(value, Potential):
+        return {f"{_MARK}potential": value.to_dict()}
+    if isinstance(value, LayDownModel):
+        return {f"{_MARK}model": value.to_dict()}
+    if isinstance(value, PhaseSpaceGrid | PlaneGrid):
+        kind = "plane" if isinstance(value, PlaneGrid) else "grid"
+        return {f"{_MARK}{kind}": value.to_dict()}
+    if isinstance(value, FORMULAS):
+        return {f"{_MARK}law": value.to_dict()}
+    if isinstance(value, np.random.SeedSequence):
+        return {f"{_MARK}seed": {"entropy": value.entropy,
+                                 "spawn_key": list(value.spawn_key)}}  # fmt: skip
+    if isinstance(value, Mapping):
+        return {str(name): _described(one) for name, one in value.items()}
+    if isinstance(value, list | tuple):
+        return [_described(one) for one in value]
+    if isinstance(value, np.ndarray | np.generic):
+        return value.tolist()
+    if value is None or isinstance(value, bool | int | float | str):
+        return value
+    return {_USER_CODE: getattr(value, "__qualname__", type(value).__qualname__)}
+
+
+def _read(argument: str, value: Any) -> Any:
+    """Return what `_described` described; UserCodeError names the argument."""
+    if isinstance(value, list):
+        return [_read(argument, one) for one in value]
+    if not isinstance(value, dict):
+        return value
+    if _USER_CODE in value:
+        raise UserCodeError(argument, str(value[_USER_CODE]))
+    kind = next(iter(value), "")
+    if len(value) == 1 and kind in _READERS:
+        try:
+            return _READERS[kind](value[kind])
+        except ValueError as error:
+            raise UserCodeError(argument, str(error)) from None
+    return {name: _read(argument, one) for name, one in value.items()}

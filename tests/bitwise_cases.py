@@ -1,0 +1,168 @@
+"""Digests of results of every kind; as a script it prints them as JSON.
+
+Run as a script, it computes them with the threads that the environment asks for.
+"""
+
+import hashlib
+import json
+import sys
+import warnings
+
+import numpy as np
+
+import fpsolve as fp
+from fpsolve import _threads
+
+GRID = fp.PhaseSpaceGrid(5.0, (20, 16, 16))
+QUADRATIC, LINEAR = fp.QuadraticPotential(), fp.LinearPotential()
+MODEL = fp.LayDownModel(QUADRATIC, 1.0)
+BELT = fp.LayDownModel(QUADRATIC, 1.0, fp.MovingBelt(0.2))
+NOZZLE = fp.LayDownModel(QUADRATIC, 1.0, fp.RotatingNozzle(0.1, 0.3, 1.0, 0.0))
+START = fp.initial.gaussian(
+    GRID, mean=(1.0, 0.3), variance=0.6, angle=1.0, concentration=2.0
+)
+# The grid is a coarse one, made for quick tests.
+LENIENT = {"boundary_tolerance": 1.0, "negative_tolerance": 1.0, "mass_tolerance": 1.0}
+RUN = {"s_span": (0.0, 1.0), "ds": 0.25, "save_at": (0.5, 1.0), **LENIENT}
+DRIFT_KICKS = {
+    "plain": {},
+    "balanced": {"balanced": True},
+    "positive": {"positive": True},
+    "balanced and positive": {"balanced": True, "positive": True},
+    "order 4": {"interpolation_order": 4},
+}
+SEMI_LAGRANGIANS = {
+    "default": {},
+    "p": {"form": "p"},
+    "lie": {"splitting": "lie"},
+    "backward Euler": {"diffusion": "backward_euler"},
+    "order 6": {"interpolation_order": 6},
+    "limited": {"limited": True},
+    "not adjusted": {"adjusted": False},
+    "not compact": {"compact": False},
+}
+
+
+def digest(*arrays):
+    """SHA-256 of the bits of arrays."""
+    found = hashlib.sha256()
+    for array in arrays:
+        found.update(np.ascontiguousarray(array).tobytes())
+    return found.hexdigest()[:16]
+
+
+def of_solution(solution):
+    """Digest of densities, series and errors."""
+    parts = [solution.series, solution.errors or {}]
+    values = [part[name] for part in parts for name in sorted(part)]
+    return digest(solution.densities, *values)
+
+
+def drift_kick(options, model=MODEL, **run):
+    return of_solution(
+        fp.solve(fp.drift_kick(model, GRID, **options), START, **{**RUN, **run})
+    )
+
+
+def semi_lagrangian(options):
+    return of_solution(
+        fp.solve(fp.semi_lagrangian(MODEL, GRID, **options), START, **RUN)
+    )
+
+
+def paths(method, model):
+    found = fp.sample_paths(
+        model, 3000, 1.0, 0.125, seed=3, save_at=(0.5, 1.0), method=method,
+        histogram=GRID,
+    )  # fmt: skip
+    moments = found.moments().values
+    return digest(
+        found.states, found.sums, found.counts, *[moments[name] for name in moments]
+    )
+
+
+def hydrodynamic(method, extrapolate):
+    return of_solution(
+        fp.HydrodynamicLimit(BELT).solve(
+            lambda x, y: np.exp(-((x - 1) ** 2) - y**2), (0.0, 1.0), 0.25,
+            # More cells than from where on BLAS shares a sum between its threads.
+            grid=fp.PlaneGrid(5.0, (120, 100)), method=method, extrapolate=extrapolate,
+        )
+    )  # fmt: skip
+
+
+def energy(method, extrapolate):
+    process = fp.EnergyProcess(QUADRATIC, 0.3)
+    found = process.solve(
+        0.2, (0.0, 2.0), 0.25, grid=process.grid(200), method=method,
+        extrapolate=extrapolate,
+    )  # fmt: skip
+    return digest(found.masses, *[found.series[name] for name in sorted(found.series)])
+
+
+def energy_spectrum():
+    process = fp.EnergyProcess(QUADRATIC, 0.3)
+    found = [process.spectrum(4, family) for family in ("even", "odd")]
+    return digest(*[one.eigenvalues for one in found], *[one.errors for one in found])
+
+
+def spectrum(potential):
+    found = fp.spectrum(fp.LayDownModel(potential, 1.0), 2, tolerance=1e-6)
+    return digest(found.eigenvalues, found.errors, found.residuals)
+
+
+def spectral_solve():
+    law = fp.paths.GaussianLaw((1.0, 0.0), 0.25, 1.0, 2.0)
+    found = fp.spectral_solve(MODEL, law, [0.5, 1.0], tolerance=1e-3)
+    return digest(found.relative_entropy, found.mass, found.mean_xi1)
+
+
+# Everything that computes, by name.
+CASES = {
+    **{f"drift_kick, {name}": (drift_kick, options)
+       for name, options in DRIFT_KICKS.items()},
+    "drift_kick, belt": (drift_kick, {}, BELT),
+    "drift_kick, nozzle": (drift_kick, {"balanced": True}, NOZZLE),
+    **{f"semi_lagrangian, {name}": (semi_lagrangian, options)
+       for name, options in SEMI_LAGRANGIANS.items()},
+    "extrapolated": (
+        lambda: of_solution(
+            fp.solve(fp.drift_kick(MODEL, GRID), START, **RUN, extrapolate=True)
+        ),
+    ),
+    "steady_state": (
+        lambda: digest(
+            fp.steady_state(
+                BELT, fp.PhaseSpaceGrid(5.0, (16, 16, 8)), ds=0.5,
+                boundary_tolerance=1.0,
+            ).density
+        ),
+    ),
+    "hydrodynamic": (hydrodynamic, "backward_euler", False),
+    "hydrodynamic, extrapolated": (hydrodynamic, "sdirk2", True),
+    "energy": (energy, "backward_euler", False),
+    "energy, extrapolated": (energy, "sdirk2", True),
+    "energy spectrum": (energy_spectrum,),
+    "spectrum, quadratic": (spectrum, QUADRATIC),
+    "spectrum, linear": (spectrum, LINEAR),
+    "spectral_solve": (spectral_solve,),
+    "paths, splitting": (paths, "splitting", BELT),
+    "paths, euler_maruyama": (paths, "euler_maruyama", NOZZLE),
+    "paths, heun": (paths, "heun", fp.LayDownModel(LINEAR, 1.0)),
+}  # fmt: skip
+# Those in which numba shares the work between threads.
+THREADED = [name for name in CASES if name.startswith(
+    ("drift_kick", "semi_lagrangian", "extrapolated", "steady", "paths"))]  # fmt: skip
+
+
+def digest_of(name):
+    """Digest of one case."""
+    compute, *arguments = CASES[name]
+    return compute(*arguments)
+
+
+if __name__ == "__main__":
+    # Runs on grids as small as these would be left to one thread.
+    _threads.CELLS_PER_THREAD = 1
+    warnings.simplefilter("ignore")
+    json.dump({name: digest_of(name) for name in CASES}, sys.stdout)

@@ -1,0 +1,127 @@
+"""The same bits with one thread and two, of numba and of BLAS, and in processes."""
+
+import json
+import os
+import subprocess
+import sys
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
+from pathlib import Path
+
+import numpy as np
+import pytest
+from bitwise_cases import (
+    CASES,
+    GRID,
+    MODEL,
+    QUADRATIC,
+    START,
+    THREADED,
+    digest_of,
+)
+
+import fpsolve as fp
+from fpsolve import studies
+from fpsolve._blas import one_blas_thread
+
+HERE = Path(__file__).parent
+
+
+@pytest.fixture(scope="module")
+def in_this_process():
+    """Digests with one thread of numba and, see conftest, one of BLAS."""
+    return {name: digest_of(name) for name in CASES}
+
+
+def in_another_process(numba_threads, blas_threads):
+    """Digests of all cases in a process with that many threads."""
+    threads = {
+        "NUMBA_NUM_THREADS": str(numba_threads),
+        "OPENBLAS_NUM_THREADS": str(blas_threads),
+        "OMP_NUM_THREADS": str(blas_threads),
+        "MKL_NUM_THREADS": str(blas_threads),
+    }
+    ended = subprocess.run(
+        [sys.executable, str(HERE / "bitwise_cases.py")],
+        env={**os.environ, **threads}, capture_output=True, text=True, check=True,
+    )  # fmt: skip
+    return json.loads(ended.stdout)
+
+
+@pytest.mark.parametrize("name", THREADED)
+def test_two_threads_give_the_bits_of_one(name, in_this_process, on_threads):
+    assert on_threads(2, lambda: digest_of(name)) == in_this_process[name]
+
+
+def test_threads_of_blas_and_the_limit_of_numba_change_no_bit(in_this_process):
+    # Without the limit of one thread the spectrum of the energy process differs.
+    assert in_another_process(1, 2) == in_this_process
+
+
+def test_blas_has_one_thread_inside_and_its_own_again_afterwards():
+    from threadpoolctl import threadpool_info, threadpool_limits
+
+    def counts():
+        return {one["num_threads"] for one in threadpool_info()
+                if one["user_api"] == "blas"}  # fmt: skip
+
+    with threadpool_limits(limits=2, user_api="blas"):
+        with one_blas_thread():
+            assert counts() == {1}
+        assert counts() == {2}
+
+
+def equal(first, second):
+    """Whether two results are equal; the report of the comparison if not."""
+    comparison = fp.compare(first, second)
+    assert comparison.equal, str(comparison)
+    return comparison.equal
+
+
+@pytest.fixture(scope="module")
+def rates():
+    """A study of two cases in this process."""
+    return study_of_rates(workers=0)
+
+
+def study_of_rates(**options):
+    return studies.rate_versus_noise(
+        QUADRATIC, [1.0, 2.0], quick=True, parts=["gap"], **options
+    )
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_a_study_gives_the_same_bits_in_any_number_of_processes(rates, workers):
+    assert equal(rates, study_of_rates(workers=workers))
+
+
+def test_paths_from_a_client_are_those_from_this_process():
+    arguments = {"n_paths": 300, "s_end": 1.0, "ds": 0.125, "seed": 5}
+    here = fp.sample_paths(MODEL, **arguments, histogram=GRID)
+    with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:
+        there = fp.sample_paths(MODEL, **arguments, histogram=GRID, client=pool)
+    assert equal(here, there)
+
+
+def test_a_check_and_averages_do_not_depend_on_threads(on_threads):
+    def check():
+        return studies.cross_check(
+            MODEL, START, [0.5], n_paths=1000, seed=1, grid=GRID, ds=0.25,
+            paths_ds=0.125, solve_options={"boundary_tolerance": 1.0},
+        )  # fmt: skip
+
+    def averages():
+        return studies.ergodic_averages(QUADRATIC, [1.0], s_end=2.0, n_paths=40, seed=1)
+
+    for compute in (check, averages):
+        assert equal(on_threads(1, compute), on_threads(2, compute))
+
+
+def test_two_runs_in_a_row_give_the_same_bits():
+    run = {"s_span": (0.0, 0.5), "ds": 0.25, "boundary_tolerance": 1.0}
+    first, second = (
+        fp.solve(fp.drift_kick(MODEL, GRID), START, **run) for _ in range(2)
+    )
+    assert equal(first, second)
+    assert first.final.tobytes() == second.final.tobytes()
+    assert np.array_equal(first.relative_entropy, second.relative_entropy)

@@ -1,0 +1,19 @@
+"""The packaged example runs in development mode without a word of complaint."""
+
+import subprocess
+import sys
+
+from command_line import COMPILING
+
+
+def test_the_example_leaves_nothing_unclosed_and_nothing_deprecated(tmp_path):
+    # Development mode tells of files and processes that were not closed; every warning,
+    # of whatever library, is an error here.
+    words = ["run", "--example", "laydown", "--out", str(tmp_path / "out")]
+    called = subprocess.run(
+        [sys.executable, "-X", "dev", "-W", "error", "-m", "fpsolve", *words],
+        capture_output=True, text=True, timeout=120, check=False,
+    )  # fmt: skip
+    assert called.stderr.removeprefix(COMPILING) == ""
+    assert called.returncode == 0
+    assert (tmp_path / "out" / "laydown.nc").exists()

@@ -1,0 +1,184 @@
+"""Figures of the benchmark, from its JSON files.
+
+    python validation/performance/figures.py            # into docs/_static
+
+Each figure says in its PNG text "Numbers" which numbers it was drawn from: the digest
+of their files. A test compares it with the files that are kept.
+"""
+
+from __future__ import annotations
+
+import argparse
+import hashlib
+from pathlib import Path
+from typing import Any
+
+import matplotlib as mpl
+from tables import NOISES, OURS, RESULTS, Tables
+
+mpl.use("Agg")
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+STATIC = Path(__file__).parents[2] / "docs/_static"
+# Okabe and Ito's palette and a grey: told apart with any colour vision.
+STYLES = {
+    "semi_lagrangian": ("#0072B2", "o"),
+    "semi_lagrangian, extrapolated": ("#56B4E9", "s"),
+    "drift_kick": ("#D55E00", "D"),
+    "drift_kick, extrapolated": ("#E69F00", "^"),
+    "Fourier + RK4 (numpy)": ("#009E73", "v"),
+    "Dedalus 3": ("#000000", "P"),
+    "py-pde": ("#CC79A7", "X"),
+    "py-pde, expression": ("#CC79A7", "+"),
+    "FiPy (van Leer)": ("#999999", "d"),
+    "fplanck": ("#B8A800", "*"),
+    "fplanck, force corrected": ("#B8A800", "p"),
+}
+FIGURES = {
+    "benchmark_errors.png": tuple(f"noise-{noise:g}" for noise in NOISES),
+    "benchmark_scaling.png": ("cells", "s", "memory"),
+}
+
+
+def digest(parts: tuple[str, ...], folder: Path, prefix: str) -> str:
+    """SHA-256 of the files of some parts, one after the other."""
+    found = hashlib.sha256()
+    for part in parts:
+        found.update((folder / f"{prefix}-{part}.json").read_bytes())
+    return found.hexdigest()
+
+
+def family(solver: str) -> str:
+    """Legend entry: our scheme, and whether it was extrapolated; or the peer."""
+    if not solver.startswith(OURS):
+        return solver
+    name = solver.split(" (")[0]
+    return f"{name}, extrapolated" if "extrapolated" in solver else name
+
+
+def plot(axes: Axes, name: str, x: list[float], y: list[float], line: str) -> None:
+    """Points of one family: ours filled, the peers open."""
+    colour, marker = STYLES[name]
+    fill = colour if name.startswith(OURS) or marker == "+" else "white"
+    axes.loglog(
+        *(x, y, marker + line),
+        color=colour,
+        markerfacecolor=fill,
+        markersize=5,
+        linewidth=0.8,
+        label=name,
+    )
+
+
+def draw_errors(axes: Axes, rows: list[dict[str, Any]], noise: float) -> None:
+    """Error against CPU time at one noise; the runs of a peer joined."""
+    for name in STYLES:
+        mine = [row for row in rows if family(row["solver"]) == name]
+        line = "" if name.startswith(OURS) else "--"
+        cpu = [row["cpu"] for row in mine]
+        plot(axes, name, cpu, [row["l1_error"] for row in mine], line)
+    axes.set(title=f"$A = {noise:g}$", xlabel="CPU time / s")
+    axes.grid(alpha=0.3)
+
+
+def errors_figure(tables: Tables) -> Figure:
+    """One panel for every noise that was run."""
+    noises = [
+        noise
+        for noise in NOISES
+        if (tables.folder / f"{tables.prefix}-noise-{noise:g}.json").exists()
+    ]
+    figure = Figure(figsize=(2 + 3.1 * len(noises), 4.6), layout="constrained")
+    panels = figure.subplots(1, len(noises), sharey=True, squeeze=False)[0]
+    for axes, noise in zip(panels, noises, strict=True):
+        draw_errors(axes, tables.rows(noise), noise)
+    panels[0].set_ylabel(r"$L^1$ error of $p(\xi, \alpha, s = 1)$")
+    handles, labels = panels[0].get_legend_handles_labels()
+    figure.legend(
+        handles, labels, loc="outside lower center", ncols=4, fontsize="small"
+    )
+    return figure
+
+
+def draw_cells(axes: Axes, rows: list[dict[str, Any]]) -> None:
+    """Rate of whole steps against the number of cells."""
+    for name in OURS:
+        mine = [row for row in rows if row["scheme"] == name]
+        cells = [row["n"] ** 3 for row in mine]
+        plot(axes, name, cells, [row["cells_per_second"] / 1e6 for row in mine], "-")
+    axes.set(xlabel="cells", ylabel="whole steps, Mcells / CPU s", title="cells")
+
+
+def draw_arclengths(axes: Axes, rows: list[dict[str, Any]]) -> None:
+    """Error against s."""
+    for solver in dict.fromkeys(row["solver"] for row in rows):
+        mine = [row for row in rows if row["solver"] == solver]
+        s = [row["s"] for row in mine]
+        line = "-" if "balanced" not in solver or "order" in solver else ":"
+        plot(axes, family(solver), s, [row["l1_error"] for row in mine], line)
+    axes.set(xlabel="s", ylabel="$L^1$ error", title="arclength, $A = 1$")
+
+
+def draw_memory(axes: Axes, rows: list[dict[str, Any]]) -> None:
+    """Peak memory against cells, and what fpsolve says before (dotted)."""
+    for name in dict.fromkeys(row["solver"] for row in rows):
+        mine = [row for row in rows if row["solver"] == name]
+        cells = [row["n"] ** 3 for row in mine]
+        plot(axes, name, cells, [row["peak_bytes"] / 2**20 for row in mine], "-")
+        if mine[0]["estimate_bytes"]:
+            said = [row["estimate_bytes"] / 2**20 for row in mine]
+            axes.plot(cells, said, ":", color=STYLES[name][0])
+    axes.set(xlabel="cells", ylabel="peak memory / MiB", title="memory")
+
+
+def scaling_figure(tables: Tables) -> Figure:
+    """Cells, arclength, memory."""
+    figure = Figure(figsize=(10.5, 4.2), layout="constrained")
+    panels = figure.subplots(1, 3)
+    draw_cells(panels[0], tables.read("cells")["rows"])
+    draw_arclengths(panels[1], tables.read("s")["rows"])
+    draw_memory(panels[2], tables.read("memory")["rows"])
+    entries: dict[str, Any] = {}
+    for axes in panels:
+        axes.grid(alpha=0.3)
+        handles, labels = axes.get_legend_handles_labels()
+        entries = dict(zip(labels, handles, strict=True)) | entries
+    figure.legend(
+        *(list(entries.values()), list(entries)),
+        loc="outside lower center",
+        ncols=5,
+        fontsize="small",
+    )
+    return figure
+
+
+def draw_all(tables: Tables, out: Path) -> None:
+    """Draw the figures whose numbers are there."""
+    for name, parts in FIGURES.items():
+        files = [tables.folder / f"{tables.prefix}-{part}.json" for part in parts]
+        present = tuple(
+            part for part, file in zip(parts, files, strict=True) if file.exists()
+        )
+        draw = errors_figure if name == "benchmark_errors.png" else scaling_figure
+        if not present or (draw is scaling_figure and present != parts):
+            continue
+        numbers = digest(present, tables.folder, tables.prefix)
+        draw(tables).savefig(out / name, dpi=150, metadata={"Numbers": numbers})
+        print(f"drawn: {name}")
+
+
+def main() -> None:
+    """Draw into docs/_static, or beside numbers that are not the kept ones."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--quick", action="store_true")
+    parser.add_argument("--out", type=Path, default=RESULTS)
+    arguments = parser.parse_args()
+    kept = arguments.out == RESULTS and not arguments.quick
+    tables = Tables(arguments.out, "quick" if arguments.quick else "benchmark")
+    draw_all(tables, STATIC if kept else arguments.out)
+
+
+if __name__ == "__main__":
+    main()
