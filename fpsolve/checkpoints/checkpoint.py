@@ -17,7 +17,7 @@ __all__ = ["Checkpoint", "as_checkpoint"]
 class Checkpoint:
     """Where a run keeps what it needs to go on after a kill, and how often.
 
-    A checkpoint is written at the first record after every interval, at the end, and
+    A checkpoint is written once in every interval, at a record; at the end; and
     when Ctrl-C is pressed. Records and saved densities go to the folder as they come
     and do not stay in memory.
 
@@ -27,7 +27,7 @@ class Checkpoint:
         Folder, new or that of the same run, which then goes on.
     every : int or str
         Steps between two checkpoints, or a duration such as "30s", "5min" or "2h".
-        What a kill loses is at most that, plus the way to the next record.
+        What a kill loses is at most that, or the way to the next record if longer.
     notes : mapping of str, optional
         Kept beside the description of the run.
 

@@ -21,9 +21,12 @@ class Interval:
     steps: float = math.inf
     seconds: float = math.inf
 
-    def over(self, steps: int, seconds: float) -> bool:
-        """Whether so many steps or seconds since the last one are enough."""
-        return steps >= self.steps or seconds >= self.seconds
+    def over(self, ahead: int, seconds: float) -> bool:
+        """Whether one is due: the next record is so many steps from the last one.
+
+        By then more than the interval could be lost; or seconds have passed already.
+        """
+        return ahead > self.steps or seconds >= self.seconds
 
 
 def parse_interval(every: int | str) -> Interval:

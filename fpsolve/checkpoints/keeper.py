@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 import warnings
+from bisect import bisect_right
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -91,8 +92,13 @@ class CheckpointKeeper:
     def after(self, run: Run) -> None:
         """Write a checkpoint if one is due, and heed Ctrl-C."""
         self.raise_if_interrupted()
-        steps = run.step - (self.kept.step if self.kept else 0)
-        if self.interval.over(steps, time.monotonic() - self.kept_at):
+        last = self.kept.step if self.kept else 0
+        seconds = time.monotonic() - self.kept_at
+        records = run.schedule.records
+        place = bisect_right(records, run.step)
+        # The end of a pass is not waited for here: `finish` writes it.
+        ahead = records[place] - last if place < len(records) else 0
+        if self.interval.over(ahead, seconds):
             self._write(run)
 
     def finish(self, run: Run) -> None:

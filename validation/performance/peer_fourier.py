@@ -24,13 +24,15 @@ SHAPES = (
     *((48, 48, 48), (64, 64, 48), (64, 64, 64), (96, 96, 64), (128, 128, 128)),
 )
 SHARP_SHAPES = ((48, 48, 32), (56, 56, 40), (64, 64, 48))
+FOLDED_SHAPES = ((56, 56, 56), (64, 64, 64), (72, 72, 72), (80, 80, 80))
 QUICK_RUNS = ({"shape": (16, 16, 16)},)
 
 
 def runs(problem: Problem) -> tuple[dict[str, Any], ...]:
     """Settings by growing cost; then smaller steps, where they bound the error."""
     largest = tuple({"shape": shape} for shape in SHAPES)
-    return (*largest, *({"shape": shape, "share": 0.5} for shape in SHARP_SHAPES))
+    sharp = SHARP_SHAPES if problem.noise >= 1.0 else FOLDED_SHAPES
+    return (*largest, *({"shape": shape, "share": 0.5} for shape in sharp))
 
 
 def stable_step(code: FourierCollocation) -> float:

@@ -2,7 +2,7 @@
 
     python validation/performance/tables.py            # all of them
 
-docs/benchmarks.md prints its tables with these functions. Nothing is imported that is
+benchmarks.md prints its tables with these functions. Nothing is imported that is
 not in Python's own library.
 """
 

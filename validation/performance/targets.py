@@ -11,7 +11,8 @@ about times. Writes results/benchmark-targets.json:
   time for `*_elapsed`. `steps` is one of N_STEPS steps made by one `advance`, `step`
   one made alone, `record` one `Recorder.record`, `euler` one explicit Euler step of
   py-pde with the equation as a user types it, `euler_fused` with coefficients fused by
-  hand into a `PDEBase`, about 3.6 times faster. The aim was set against the first.
+  hand into a `PDEBase`. The aim was set without saying which; the first is what a
+  user of py-pde writes.
 - `measured`: medians; cells per second, ratios, and seconds.
 - `aims`: what each of `measured` is compared with, and whether it is to be above or
   below.
