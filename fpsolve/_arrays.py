@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from fpsolve._checks import shown
 
-__all__ = ["check_finite_numbers", "check_floats", "check_numbers"]
+__all__ = ["check_answers", "check_finite_numbers", "check_floats", "check_numbers"]
 
 Array = NDArray[np.float64]
 
@@ -36,6 +36,18 @@ def check_numbers(name: str, values: Any) -> Array:
             f"`{name}` must hold real numbers, got {shown(values)} ({array.dtype})."
         )
     return np.asarray(array, dtype=np.float64)
+
+
+def check_answers(name: str, values: Any) -> Array:
+    """As `check_numbers` for what a user's function returns: true and false count.
+
+    They are 1 and 0: the average of an indicator is a probability.
+    """
+    if isinstance(values, bool | np.bool | np.ndarray):
+        # Not `asarray`, which would forget what is masked.
+        array = np.asanyarray(values)
+        values = array.astype(np.float64) if array.dtype.kind == "b" else array
+    return check_numbers(name, values)
 
 
 def check_finite_numbers(name: str, values: Any) -> Array:

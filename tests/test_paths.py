@@ -306,6 +306,16 @@ def test_time_averages_are_the_trapezoidal_rule_over_every_step():
     assert np.array_equal(paths.time_averages(functions[0])[1:], averages[0, 1:])
 
 
+def test_the_average_of_an_indicator_is_the_share_of_the_length(model):
+    paths = fp.sample_paths(model, 50, 2.0, 0.25, seed=3)
+    share = paths.time_averages(lambda xi1, xi2, alpha: np.hypot(xi1, xi2) < 1.0)
+    number = paths.time_averages(
+        lambda xi1, xi2, alpha: np.where(np.hypot(xi1, xi2) < 1.0, 1.0, 0.0)
+    )
+    assert np.array_equal(share, number)
+    assert 0.0 < share[-1].mean() < 1.0
+
+
 def test_time_averages_of_paths_that_were_not_kept_are_the_same(model):
     kept, gone = (
         fp.sample_paths(model, 2500, 1.0, 0.1, seed=3, keep=keep)

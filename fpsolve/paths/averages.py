@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve._arrays import check_numbers
+from fpsolve._arrays import check_answers
 from fpsolve._checks import check_call
 from fpsolve.paths.ensemble import angle_of
 from fpsolve.paths.trajectory import traced
@@ -34,7 +34,7 @@ def observed(f: Observable, xi1: Array, xi2: Array, alpha: Array) -> Array:
         If f does not work elementwise or gives NaN or infinity.
     """
     check_call("f", f, "f(xi1, xi2, alpha)")
-    values = check_numbers("f", f(xi1, xi2, alpha))
+    values = check_answers("f", f(xi1, xi2, alpha))
     if values.shape not in ((), xi1.shape):
         raise ValueError(
             f"`f` must work elementwise, got shape {values.shape} for arguments of "

@@ -152,7 +152,7 @@ def main() -> None:
         return
     import paths_report
     from machine import measure_machine
-    from report import write_json
+    from results import write_json
 
     peers = PEERS if arguments.peers is None else arguments.peers
     measured = collect(peers, quick=quick)

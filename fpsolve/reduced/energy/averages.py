@@ -11,7 +11,7 @@ from numpy.polynomial import Chebyshev
 from numpy.polynomial.legendre import leggauss
 from numpy.typing import ArrayLike, NDArray
 
-from fpsolve._arrays import check_finite_numbers
+from fpsolve._arrays import check_answers, check_finite_numbers
 from fpsolve.reduced.energy.well import Well
 
 __all__ = ["OrbitAverages"]
@@ -225,7 +225,7 @@ def _interpolated(f: Function, degree: int) -> Chebyshev:
 
 def observed(f: OfOrbit, r: Array, beta: Array) -> Array:
     """Values of f on the orbits; ValueError unless elementwise and finite."""
-    values = check_finite_numbers("f", f(r, beta))
+    values = check_finite_numbers("f", check_answers("f", f(r, beta)))
     if values.shape not in ((), r.shape):
         raise ValueError(
             f"`f` must work elementwise, got shape {values.shape} for arguments of "
