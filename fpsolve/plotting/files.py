@@ -51,10 +51,11 @@ def save_figures(
     if not isinstance(result, Paths):
         check_solution(result)
     directory = made_folder(directory)
-    return [
-        _write(plot(result), directory / f"{prefix}{name}.png")
-        for name, plot in possible_figures(result).items()
-    ]
+    with paper_style():
+        return [
+            _write(plot(result), directory / f"{prefix}{name}.png")
+            for name, plot in possible_figures(result).items()
+        ]
 
 
 def possible_figures(result: Solution | Paths) -> dict[str, Callable[[Any], Figure]]:
