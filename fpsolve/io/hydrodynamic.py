@@ -15,7 +15,7 @@ from fpsolve.io.attributes import (
     read_model,
     to_json,
 )
-from fpsolve.io.variables import COORDINATES, long_name
+from fpsolve.io.variables import COORDINATES, long_name, read_errors, read_series
 from fpsolve.planes import PlaneGrid
 from fpsolve.reduced.hydrodynamic import HydrodynamicLimit, HydrodynamicSolution
 
@@ -105,10 +105,10 @@ def from_xarray(dataset: xr.Dataset) -> HydrodynamicSolution:
         grid=PlaneGrid.from_dict(json.loads(attributes["grid"])),
         method=str(attributes["method"]),
         ds=float(attributes["ds"]),
-        series=_read_series(dataset),
+        series=read_series(dataset, "s_step"),
         saved_s=dataset["s"].values,
         densities=dataset["density"].values,
-        errors=_read_errors(dataset) or None,
+        errors=read_errors(dataset) or None,
         provenance=provenance,
         initial_density=start,
         status=str(attributes["status"]),
@@ -134,19 +134,3 @@ def _labelled(
     name: str, dimension: str, values: np.ndarray
 ) -> tuple[str, np.ndarray, dict[str, str]]:
     return dimension, values, labels(_NAMES.get(name) or long_name(name))
-
-
-def _read_series(dataset: xr.Dataset) -> dict[str, Any]:
-    series = {"s": dataset["s_step"].values}
-    for name, variable in dataset.data_vars.items():
-        if variable.dims == ("s_step",) and not str(name).endswith("_error"):
-            series[str(name)] = variable.values
-    return series
-
-
-def _read_errors(dataset: xr.Dataset) -> dict[str, Any]:
-    return {
-        str(name).removesuffix("_error"): variable.values
-        for name, variable in dataset.data_vars.items()
-        if str(name).endswith("_error")
-    }

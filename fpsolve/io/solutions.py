@@ -17,7 +17,14 @@ from fpsolve.io.attributes import (
     to_json,
 )
 from fpsolve.io.layout import check_solution_layout
-from fpsolve.io.variables import COORDINATES, DENSITY, START, long_name
+from fpsolve.io.variables import (
+    COORDINATES,
+    DENSITY,
+    START,
+    long_name,
+    read_errors,
+    read_series,
+)
 from fpsolve.solution import Solution
 
 if TYPE_CHECKING:
@@ -109,7 +116,7 @@ def from_xarray(dataset: xr.Dataset) -> Solution:
     check_complete(dataset, _NEEDED, _NEEDED_ATTRIBUTES)
     provenance = json.loads(attributes["provenance"])
     model = read_model(attributes, provenance)
-    errors = _read_errors(dataset)
+    errors = read_errors(dataset)
     grid = PhaseSpaceGrid.from_dict(json.loads(attributes["grid"]))
     scheme = json.loads(attributes["scheme"])
     check_solution_layout(dataset, grid, scheme)
@@ -118,7 +125,7 @@ def from_xarray(dataset: xr.Dataset) -> Solution:
         grid=grid,
         scheme=scheme,
         ds=float(attributes["ds"]),
-        series=_read_series(dataset),
+        series=read_series(dataset, "step"),
         saved_s=dataset["s"].values,
         densities=dataset["density"].values,
         entropy_floor=float(dataset["entropy_floor"]),
@@ -188,20 +195,4 @@ def _attributes(solution: Solution) -> dict[str, Any]:
         "status": solution.status,
         "message": solution.message,
         **origin(solution.provenance),
-    }
-
-
-def _read_series(dataset: xr.Dataset) -> dict[str, Any]:
-    series = {"s": dataset["s_step"].values}
-    for name, variable in dataset.data_vars.items():
-        if variable.dims == ("step",) and not str(name).endswith("_error"):
-            series[str(name)] = variable.values
-    return series
-
-
-def _read_errors(dataset: xr.Dataset) -> dict[str, Any]:
-    return {
-        str(name).removesuffix("_error"): variable.values
-        for name, variable in dataset.data_vars.items()
-        if str(name).endswith("_error")
     }

@@ -1,8 +1,21 @@
-"""What the variables of a result are: long names in the symbols of the paper."""
+"""What the variables of a result are: their names in words, series and errors."""
 
 from __future__ import annotations
 
-__all__ = ["COORDINATES", "DENSITY", "SERIES", "START", "long_name"]
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = [
+    "COORDINATES",
+    "DENSITY",
+    "SERIES",
+    "START",
+    "long_name",
+    "read_errors",
+    "read_series",
+]
 
 DENSITY = "probability density p(s, ξ₁, ξ₂, α)"
 
@@ -51,3 +64,21 @@ def long_name(variable: str) -> str:
     quantity = variable.removesuffix("_error")
     name = _ERRORS.get(quantity) or SERIES.get(quantity, quantity)
     return name if quantity == variable else f"estimated error of: {name}"
+
+
+def read_series(dataset: xr.Dataset, dimension: str) -> dict[str, Any]:
+    """Return every recorded series of a solution, s first; errors are left out."""
+    series = {"s": dataset["s_step"].values}
+    for name, variable in dataset.data_vars.items():
+        if variable.dims == (dimension,) and not str(name).endswith("_error"):
+            series[str(name)] = variable.values
+    return series
+
+
+def read_errors(dataset: xr.Dataset) -> dict[str, Any]:
+    """Return every error estimate of a solution by the name of its quantity."""
+    return {
+        str(name).removesuffix("_error"): variable.values
+        for name, variable in dataset.data_vars.items()
+        if str(name).endswith("_error")
+    }
