@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import argparse
 import hashlib
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -58,7 +59,7 @@ def family(solver: str) -> str:
     return f"{name}, extrapolated" if "extrapolated" in solver else name
 
 
-def plot(axes: Axes, name: str, x: list[float], y: list[float], line: str) -> None:
+def plot(axes: Axes, name: str, x: list[float], y: list[float], line: str = "") -> None:
     """Points of one family: ours filled, the peers open."""
     colour, marker = STYLES[name]
     fill = colour if name.startswith(OURS) or marker == "+" else "white"
@@ -72,13 +73,26 @@ def plot(axes: Axes, name: str, x: list[float], y: list[float], line: str) -> No
     )
 
 
+def front(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Runs that no cheaper run beats, by CPU time."""
+    best: list[dict[str, Any]] = []
+    for row in sorted(rows, key=lambda row: row["cpu"]):
+        if not best or row["l1_error"] < best[-1]["l1_error"]:
+            best.append(row)
+    return best
+
+
 def draw_errors(axes: Axes, rows: list[dict[str, Any]], noise: float) -> None:
-    """Error against CPU time at one noise; the runs of a peer joined."""
+    """Error against CPU time at one noise; a line joins a family's best runs."""
     for name in STYLES:
         mine = [row for row in rows if family(row["solver"]) == name]
-        line = "" if name.startswith(OURS) else "--"
-        cpu = [row["cpu"] for row in mine]
-        plot(axes, name, cpu, [row["l1_error"] for row in mine], line)
+        if not mine:
+            continue
+        best = front(mine)
+        style = "-" if name.startswith(OURS) else "--"
+        x, y = [row["cpu"] for row in best], [row["l1_error"] for row in best]
+        axes.loglog(x, y, style, color=STYLES[name][0], linewidth=0.8)
+        plot(axes, name, [row["cpu"] for row in mine], [r["l1_error"] for r in mine])
     axes.set(title=f"$A = {noise:g}$", xlabel="CPU time / s")
     axes.grid(alpha=0.3)
 
@@ -95,11 +109,22 @@ def errors_figure(tables: Tables) -> Figure:
     for axes, noise in zip(panels, noises, strict=True):
         draw_errors(axes, tables.rows(noise), noise)
     panels[0].set_ylabel(r"$L^1$ error of $p(\xi, \alpha, s = 1)$")
-    handles, labels = panels[0].get_legend_handles_labels()
-    figure.legend(
-        handles, labels, loc="outside lower center", ncols=4, fontsize="small"
-    )
+    legend(figure, panels, 4)
     return figure
+
+
+def legend(figure: Figure, panels: Iterable[Axes], columns: int) -> None:
+    """One legend for what any of the panels shows, below them."""
+    entries: dict[str, Any] = {}
+    for axes in panels:
+        handles, labels = axes.get_legend_handles_labels()
+        entries = dict(zip(labels, handles, strict=True)) | entries
+    figure.legend(
+        *(list(entries.values()), list(entries)),
+        loc="outside lower center",
+        ncols=columns,
+        fontsize="small",
+    )
 
 
 def draw_cells(axes: Axes, rows: list[dict[str, Any]]) -> None:
@@ -109,6 +134,7 @@ def draw_cells(axes: Axes, rows: list[dict[str, Any]]) -> None:
         cells = [row["n"] ** 3 for row in mine]
         plot(axes, name, cells, [row["cells_per_second"] / 1e6 for row in mine], "-")
     axes.set(xlabel="cells", ylabel="whole steps, Mcells / CPU s", title="cells")
+    axes.set(yscale="linear", ylim=(0, None))
 
 
 def draw_arclengths(axes: Axes, rows: list[dict[str, Any]]) -> None:
@@ -131,6 +157,7 @@ def draw_memory(axes: Axes, rows: list[dict[str, Any]]) -> None:
             said = [row["estimate_bytes"] / 2**20 for row in mine]
             axes.plot(cells, said, ":", color=STYLES[name][0])
     axes.set(xlabel="cells", ylabel="peak memory / MiB", title="memory")
+    axes.set(yscale="linear", ylim=(0, None))
 
 
 def scaling_figure(tables: Tables) -> Figure:
@@ -140,17 +167,9 @@ def scaling_figure(tables: Tables) -> Figure:
     draw_cells(panels[0], tables.read("cells")["rows"])
     draw_arclengths(panels[1], tables.read("s")["rows"])
     draw_memory(panels[2], tables.read("memory")["rows"])
-    entries: dict[str, Any] = {}
     for axes in panels:
         axes.grid(alpha=0.3)
-        handles, labels = axes.get_legend_handles_labels()
-        entries = dict(zip(labels, handles, strict=True)) | entries
-    figure.legend(
-        *(list(entries.values()), list(entries)),
-        loc="outside lower center",
-        ncols=5,
-        fontsize="small",
-    )
+    legend(figure, panels, 5)
     return figure
 
 

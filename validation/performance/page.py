@@ -1,6 +1,6 @@
 """Writes what the blocks of a page print under them, after a new run of the benchmark.
 
-    python validation/performance/page.py            # benchmarks.md
+    python validation/performance/page.py            # docs/benchmarks.md
 
 A `text` block right below a `python` block is replaced by what the latter prints now.
 """
@@ -14,7 +14,7 @@ import re
 from pathlib import Path
 from typing import Any
 
-PAGE = Path(__file__).with_name("benchmarks.md")
+PAGE = Path(__file__).parents[2] / "docs/benchmarks.md"
 PAIR = re.compile(
     r"^```python\n(?P<code>.*?)^```\n(?P<shown>```text\n.*?^```\n)?",
     re.MULTILINE | re.DOTALL,

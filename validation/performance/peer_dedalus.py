@@ -26,7 +26,9 @@ from timing import ONCE_ABOVE, Stopwatch, measure
 
 NAME = "Dedalus 3"
 VERSION = version("dedalus")
-STABLE_STEP = 1.5  # divided by the largest frequency; RK443 allows 1.57 without diffusion
+STABLE_STEP = (
+    1.5  # divided by the largest frequency; RK443 allows 1.57 without diffusion
+)
 SHAPES = (
     *((24, 24, 16), (32, 32, 24), (32, 32, 32), (40, 40, 32)),
     *((48, 48, 48), (64, 64, 64), (128, 128, 128)),

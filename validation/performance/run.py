@@ -123,7 +123,7 @@ def main() -> None:
     if failed:
         sys.exit(f"failed: {'; '.join(failed)}")
     if arguments.out == FOLDER and not arguments.quick:
-        print("benchmarks.md shows these numbers: refresh it with page.py")
+        print("docs/benchmarks.md shows these numbers: refresh it with page.py")
 
 
 if __name__ == "__main__":

@@ -2,7 +2,7 @@
 
     python validation/performance/tables.py            # all of them
 
-benchmarks.md prints its tables with these functions. Nothing is imported that is
+docs/benchmarks.md prints its tables with these functions. Nothing is imported that is
 not in Python's own library.
 """
 
@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import math
 from pathlib import Path
 from typing import Any
 
@@ -25,6 +26,14 @@ AIMS = (
     ("semi_lagrangian", False, 1, 25),
     ("", True, 500, 100),
 )
+AIMED_AT = {
+    "cells_per_second": "cells of a whole step of drift_kick per second, 64³, 1 thread",
+    "ratio_to_euler": "steps of drift_kick per explicit Euler step of py-pde",
+    "two_threads": "steps on two threads per step on one",
+    "record_share": "time of a record over that of a step",
+    "import_seconds": "seconds of import fpsolve, beyond an empty process",
+    "example_seconds": "seconds of a warm fpsolve run of the example",
+}
 
 
 class Tables:
@@ -159,6 +168,32 @@ class Tables:
         parts = self.read("start")["contributors"]
         print(", ".join(f"{name} {seconds:.2f} s" for name, seconds in parts.items()))
 
+    def operators(self) -> None:
+        """Rates of our operators beside what the machine copies and multiplies."""
+        print(f"{'':34} {'Mcells/s':>8} {'of copying':>10} {'of DGEMM':>8}")
+        for row in self.read("operators")["kernels"]:
+            shares = row["shares"]
+            print(
+                f"{row['name']:34} {row['cells_per_second'] / 1e6:8.1f} "
+                f"{shares['copy_large']:10.0%} {percent(shares['dgemm']):>8}"
+            )
+
+    def targets(self) -> None:
+        """Aims for whole steps, records and the start, and what was reached."""
+        record = self.read("targets")
+        for name, (relation, aim) in record["aims"].items():
+            value = record["measured"][name]
+            met = value >= aim if relation == ">=" else value <= aim
+            word = "reached" if met else "MISSED "
+            print(f"{word} {AIMED_AT[name]}: {value:.3g}, aim {relation} {aim:.3g}")
+        measured = record["measured"]
+        fastest = min(one["steps"] for one in record["rounds"])
+        cells = math.prod(record["shape"])
+        print(f"fastest round: {cells / fastest:.3g} cells per second")
+        fused = measured["ratio_to_fused_euler"]
+        print(f"steps per Euler step of py-pde with fused coefficients: {fused:.3g}")
+        print(f"record over a step made alone: {measured['record_share_alone']:.3g}")
+
     def reference(self, noise: float) -> None:
         """L1 differences of a reference to variations of itself."""
         known = ("noise", "s", "half_width", "shape", "rtol")
@@ -194,6 +229,11 @@ def cheapest(rows: list[dict[str, Any]], level: float) -> dict[str, Any] | None:
 def mebibytes(n_bytes: int | None) -> str:
     """Memory as printed, or a dash."""
     return "-" if n_bytes is None else f"{n_bytes / 2**20:4.0f} MiB"
+
+
+def percent(share: float | None) -> str:
+    """A share as printed, or a dash."""
+    return "-" if share is None else f"{share:.0%}"
 
 
 def cost(row: dict[str, Any] | None) -> str:
@@ -245,7 +285,8 @@ def print_all(tables: Tables) -> None:
     calls += [("noise-1", tables.aims, ()), ("cells", tables.cells, ())]
     calls += [("threads", tables.threads, ()), ("s", tables.arclengths, ())]
     calls += [("memory", tables.memory, ()), ("start", tables.start, ())]
-    calls += [("start", tables.contributors, ())]
+    calls += [("start", tables.contributors, ()), ("targets", tables.targets, ())]
+    calls += [("operators", tables.operators, ())]
     calls += [(f"reference-{noise:g}", tables.reference, (noise,)) for noise in NOISES]
     for part, method, arguments in calls:
         if (tables.folder / f"{tables.prefix}-{part}.json").exists():
