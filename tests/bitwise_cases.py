@@ -106,8 +106,8 @@ def energy_spectrum():
     return digest(*[one.eigenvalues for one in found], *[one.errors for one in found])
 
 
-def spectrum(potential):
-    found = fp.spectrum(fp.LayDownModel(potential, 1.0), 2, tolerance=1e-6)
+def spectrum(model, tolerance=1e-6):
+    found = fp.spectrum(model, 2, tolerance=tolerance)
     return digest(found.eigenvalues, found.errors, found.residuals)
 
 
@@ -143,8 +143,10 @@ CASES = {
     "energy": (energy, "backward_euler", False),
     "energy, extrapolated": (energy, "sdirk2", True),
     "energy spectrum": (energy_spectrum,),
-    "spectrum, quadratic": (spectrum, QUADRATIC),
-    "spectrum, linear": (spectrum, LINEAR),
+    "spectrum, quadratic": (spectrum, MODEL),
+    "spectrum, linear": (spectrum, fp.LayDownModel(LINEAR, 1.0)),
+    "spectrum, power": (spectrum, fp.LayDownModel(fp.PowerPotential(4.0), 1.0)),
+    "spectrum, belt": (spectrum, BELT, 1e-4),
     "spectral_solve": (spectral_solve,),
     "paths, splitting": (paths, "splitting", BELT),
     "paths, euler_maruyama": (paths, "euler_maruyama", NOZZLE),

@@ -1,6 +1,7 @@
 """Threads, floating-point errors and what many tests share."""
 
 import os
+import signal
 
 # Two threads can be had on every machine, so that tests of thread counts mean the
 # same everywhere; one for BLAS, whose small products are called from these threads.
@@ -16,6 +17,10 @@ from hypothesis import HealthCheck, settings
 from fpsolve.grids import PhaseSpaceGrid
 from fpsolve.models import LayDownModel
 from fpsolve.potentials import QuadraticPotential
+
+# A shell ignores this signal in what it runs in the background, and so do all commands
+# that are started from there; tests send it to commands.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 
 # The grids are small: where a test does not ask for two threads, waiting for the
 # second one would cost more than it does.

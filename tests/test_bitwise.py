@@ -78,21 +78,28 @@ def equal(first, second):
     return comparison.equal
 
 
-@pytest.fixture(scope="module")
-def rates():
-    """A study of two cases in this process."""
-    return study_of_rates(workers=0)
+# Studies with every part that they have.
+STUDIES = {
+    "rates": lambda workers: studies.rate_versus_noise(
+        QUADRATIC, [2.0], quick=True, workers=workers
+    ),
+    "large noise": lambda workers: studies.large_noise_limit(
+        QUADRATIC, [1.4], quick=True, workers=workers
+    ),
+    "small noise": lambda workers: studies.small_noise_limit(
+        QUADRATIC, [0.8], belt_speed_scales=[0.0], n_paths=200, quick=True,
+        workers=workers,
+    ),
+}  # fmt: skip
 
 
-def study_of_rates(**options):
-    return studies.rate_versus_noise(
-        QUADRATIC, [1.0, 2.0], quick=True, parts=["gap"], **options
-    )
-
-
-@pytest.mark.parametrize("workers", [1, 2])
-def test_a_study_gives_the_same_bits_in_any_number_of_processes(rates, workers):
-    assert equal(rates, study_of_rates(workers=workers))
+@pytest.mark.parametrize("name", STUDIES)
+def test_a_study_gives_the_same_bits_on_two_threads_and_in_processes(name, on_threads):
+    compute = STUDIES[name]
+    here = on_threads(1, lambda: compute(0))
+    assert set(here["status"].values.ravel()) == {"finished"}
+    assert equal(here, on_threads(2, lambda: compute(0)))
+    assert equal(here, compute(2))
 
 
 def test_paths_from_a_client_are_those_from_this_process():

@@ -86,6 +86,10 @@ RESULTS = {
     "large noise": lambda: studies.large_noise_limit(
         QUADRATIC, [1.4], quick=True, parts=["gap"], workers=0
     ),
+    "small noise": lambda: studies.small_noise_limit(
+        QUADRATIC, [0.8], belt_speed_scales=[0.0], n_paths=50, quick=True
+    ),
+    "small noise, spectrum": lambda: studies.small_noise_spectrum(QUADRATIC, [0.8]),
     "energy tables": lambda: tables_dataset(ENERGY, 3, 2),
     "check": lambda: checked(START, scheme=fp.drift_kick(MODEL, GRID)),
     "check, law": lambda: checked(GaussianLaw((0.5, 0.0), 0.8, 1.0, 1.0)),
