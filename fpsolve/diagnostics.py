@@ -133,11 +133,11 @@ def moments(p: Array, grid: PhaseSpaceGrid) -> dict[str, float]:
 
 
 def functionals(p: Array, grid: PhaseSpaceGrid, inverse: Array | None = None) -> Array:
-    """Sums over α for every ξ; shape (n1, n2, 7), see the kernel.
+    """Sums over α for every ξ; shape (7, n1, n2), see the kernel.
 
     The last is Σ p ln(p inverse), inverse (n1, n2), and zero without it.
     """
-    out = np.empty((*grid.shape[:2], N_FUNCTIONALS))
+    out = np.empty((N_FUNCTIONALS, *grid.shape[:2]))
     inverse = np.ones((1, 1)) if inverse is None else inverse
     row_functionals(p, np.cos(grid.alpha), np.sin(grid.alpha), inverse, out)
     return out
@@ -151,8 +151,8 @@ def inverse_of(reference: Array, ratio: float) -> Array:
 
 def moments_of_rows(rows: Array, grid: PhaseSpaceGrid) -> dict[str, float]:
     """Moments from the row functionals."""
-    total = rows[:, :, 0].sum()
-    share = rows[:, :, 0] / total
+    total = rows[0].sum()
+    share = rows[0] / total
     share1, share2 = share.sum(axis=1), share.sum(axis=0)
     mean1, mean2 = float((share1 * grid.xi1).sum()), float((share2 * grid.xi2).sum())
     away1, away2 = grid.xi1 - mean1, grid.xi2 - mean2
@@ -162,8 +162,8 @@ def moments_of_rows(rows: Array, grid: PhaseSpaceGrid) -> dict[str, float]:
         float((share1 * away1**2).sum()),
         float((share2 * away2**2).sum()),
         float(((share * away2).sum(axis=1) * away1).sum()),
-        float(rows[:, :, 1].sum() / total),
-        float(rows[:, :, 2].sum() / total),
+        float(rows[1].sum() / total),
+        float(rows[2].sum() / total),
     )
     return dict(zip(MOMENTS, values, strict=True))
 
@@ -202,10 +202,10 @@ def relative_entropy(p: Array, grid: PhaseSpaceGrid, reference: Array) -> float:
 
 def entropy_of_rows(rows: Array, grid: PhaseSpaceGrid, ratio: float) -> float:
     """H(p|r) from row functionals made with `inverse_of(r, ratio)`."""
-    total = float(rows[:, :, 0].sum())
+    total = float(rows[0].sum())
     if not (total > 0.0 and ratio > 0.0):
         return math.nan
-    return (float(rows[:, :, 6].sum()) + total * math.log(ratio)) * grid.cell_volume
+    return (float(rows[6].sum()) + total * math.log(ratio)) * grid.cell_volume
 
 
 def entropy_of_slab(p: Array, reference: Array) -> float:
@@ -269,7 +269,7 @@ def entropy_dissipation(
 
 def dissipation_of_rows(rows: Array, grid: PhaseSpaceGrid, noise: float) -> float:
     """Dissipation from the row functionals."""
-    total = float(rows[:, :, 3].sum()) / grid.spacing[2] ** 2
+    total = float(rows[3].sum()) / grid.spacing[2] ** 2
     return 2.0 * noise**2 * total * grid.cell_volume
 
 

@@ -59,7 +59,7 @@ class Arguments:
     def sums_kernel(self, logarithms):
         inverse = self.rng.uniform(0.5, 2.0, (self.n1, self.n2))
         inverse = inverse if logarithms else np.ones((1, 1))
-        out = np.zeros((self.n1, self.n2, functionals.N_FUNCTIONALS))
+        out = np.zeros((functionals.N_FUNCTIONALS, self.n1, self.n2))
         alpha = self.grid.alpha
         return self.p - 0.3, np.cos(alpha), np.sin(alpha), inverse, out
 
@@ -120,8 +120,11 @@ class Arguments:
             ],
             "blend": [(p, p[::-1].copy(), 0.3, self.out())],
             "squared_differences": [(self.normal(n + 7), ones)],
-            "information": [(np.maximum(line[0], 0.0), 1.7), (ones, 1.0 + 1e-9)],
-            "read_row": [(*line[:3], ones, line[3], self.normal(n + 8), np.zeros(7))],
+            "read_row": [
+                (*line[:3], ones, inverse, self.normal(n + 8), np.zeros(7))
+                for inverse in (0.0, 1.7)
+            ],
+            "make_periodic": [(self.normal(n + 8), n)],
             "row_functionals": [self.sums_kernel(False), self.sums_kernel(True)],
             "row_sums": [(p, np.zeros((self.n1, self.n2)))],
             "scale_rows": [(p, scale.reshape(self.n1, self.n2), self.out())],

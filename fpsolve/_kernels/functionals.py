@@ -23,11 +23,13 @@ from fpsolve._kernels.lanes import (
 NEAR, NEXT, THIRD, FAR = 1225.0 / 1024.0, -245.0 / 3072.0, 49.0 / 5120.0, -5.0 / 7168.0
 
 N_FUNCTIONALS = 7
+# Rows whose roots are written before any of them is read: what has just been written
+# in one place cannot be read in another without waiting.
+ROWS_TOGETHER = 4
 
 # Arguments of the logarithm: normal numbers, far below what carries mass.
 SMALLEST = 1e-300
-# ln 2 in two parts, the first with 32 bits, so that its multiples are exact.
-LN2_HIGH, LN2_LOW = 6.93147180369123816490e-01, 1.90821492927058770002e-10
+LN2 = 6.93147180559945286227e-01
 # ln((1 + s)/(1 − s)) = 2s + s R(s²), |s| ≤ 0.1716: minimax polynomial, error 2⁻⁵⁸,
 # of Sun's fdlibm.
 R1, R2, R3, R4, R5, R6, R7 = (
@@ -39,7 +41,7 @@ R1, R2, R3, R4, R5, R6, R7 = (
 
 @register_jitable(fastmath={"contract"}, error_model="numpy")
 def logarithm(x):
-    """ln x of four positive normal numbers, to one unit in the last place.
+    """ln x of four positive normal numbers, to two units in the last place.
 
     x = 2^e m with m in [√½, √2), and ln m by the polynomial of fdlibm: four at once,
     which a call of a library's logarithm is not.
@@ -54,9 +56,8 @@ def logarithm(x):
     tail = tail + z * (
         spread(R1) + w * (spread(R3) + w * (spread(R5) + w * spread(R7)))
     )
-    half = spread(0.5) * f * f
-    low = s * (half + tail) + e * spread(LN2_LOW)
-    return e * spread(LN2_HIGH) - ((half - low) - f)
+    # f is exact, and s (f − R) at most a fifth of it.
+    return e * spread(LN2) + (f - s * (f - tail))
 
 
 @register_jitable
@@ -86,23 +87,14 @@ def squared_differences(padded, ones):
 
 
 @njit(cache=True, fastmath={"contract"}, error_model="numpy")
-def information(positive, inverse):
-    """Σ_k p ln(p inverse); positive (N,) holds p ≥ 0, N a multiple of four."""
-    total, scale, smallest = spread(0.0), spread(inverse), spread(SMALLEST)
-    for k in range(0, positive.size, LANES):
-        p = take(positive, (k,))
-        total = total + p * logarithm(larger(p * scale, smallest))
-    return summed(total)
+def read_row(row, cosine, sine, ones, inverse, roots, out):
+    """out = Σ p, Σ p cos α, Σ p sin α, 0, min p, Σ max(−p, 0), Σ p ln q of a row.
 
-
-@njit(cache=True, fastmath={"contract"}, error_model="numpy")
-def read_row(row, cosine, sine, ones, positive, roots, out):
-    """out[:6] = Σ p, Σ p cos α, Σ p sin α, unused, min p, Σ max(−p, 0) of a row.
-
-    All rows (N,), N a multiple of four; positive = max(p, 0) · ones and
-    roots[k + 3] = √max(p, 0) are left for what follows.
+    All rows (N,), N a multiple of four; q = p inverse, and no logarithms for
+    inverse = 0. roots[k + 3] = √max(p, 0) is left for what follows.
     """
-    total = total_cosine = total_sine = negative = zero = spread(0.0)
+    total = total_cosine = total_sine = negative = information = spread(0.0)
+    zero, scale, smallest = spread(0.0), spread(inverse), spread(SMALLEST)
     lowest = take(row, (0,))
     for k in range(0, row.size, LANES):
         p, counted = take(row, (k,)), take(ones, (k,))
@@ -113,19 +105,31 @@ def read_row(row, cosine, sine, ones, positive, roots, out):
         total_sine = total_sine + take(sine, (k,)) * p
         negative = negative - counted * below
         lowest = smaller(lowest, p)
-        put(positive, (k,), counted * above)
         put(roots, (k + 3,), root(above))
+        if inverse > 0.0:
+            q = logarithm(larger(above * scale, smallest))
+            information = information + counted * above * q
     a, b, c, d = parts(lowest)
     out[0], out[1], out[2] = summed(total), summed(total_cosine), summed(total_sine)
-    out[4], out[5] = min(min(a, b), min(c, d)), summed(negative)
+    out[3], out[4] = 0.0, min(min(a, b), min(c, d))
+    out[5], out[6] = summed(negative), summed(information)
+
+
+@njit(cache=True, error_model="numpy")
+def make_periodic(padded, n):
+    """padded[3 : n + 3] holds a period: the same before (3 cells) and behind (5)."""
+    for k in range(3):
+        padded[k] = padded[k + n]
+    for k in range(5):
+        padded[n + 3 + k] = padded[k + 3]
 
 
 @njit(cache=True, parallel=True, fastmath={"contract"}, error_model="numpy")
 def row_functionals(p, cosine, sine, inverse, out):
-    """out[i, j] = Σ_k of p, p cos α, p sin α, (δ√p)², min_k p, Σ_k max(−p, 0), p ln q.
+    """out[:, i, j] = Σ_k of p, p cos α, p sin α, (δ√p)², min_k p, Σ max(−p, 0), p ln q.
 
     p (n1, n2, n_alpha); cosine, sine (n_alpha,); q = p inverse with inverse (n1, n2),
-    or (1, 1) for no logarithms; out (n1, n2, 7). Negative values count as zero under
+    or (1, 1) for no logarithms; out (7, n1, n2). Negative values count as zero under
     the root and in p ln q.
     """
     n1, n2, n_alpha = p.shape
@@ -135,23 +139,25 @@ def row_functionals(p, cosine, sine, inverse, out):
     weights[0, :n_alpha], weights[1, :n_alpha] = cosine, sine
     weights[2, :n_alpha] = 1.0
     for i in prange(n1):
-        rows = np.empty((2, n))
-        roots = np.empty(n + 8)
-        for j in range(n2):
-            row = rows[0]
-            for k in range(n_alpha):
-                row[k] = p[i, j, k]
-            for k in range(n_alpha, n):
-                row[k] = row[0]
-            read_row(row, weights[0], weights[1], weights[2], rows[1], roots, out[i, j])
-            for k in range(3):
-                roots[k] = roots[k + n_alpha]
-            for k in range(5):
-                roots[n_alpha + 3 + k] = roots[k + 3]
-            out[i, j, 3] = squared_differences(roots, weights[2])
-            out[i, j, 6] = 0.0
-            if inverse.size > 1:
-                out[i, j, 6] = information(rows[1], inverse[i, j])
+        row, sums = np.empty(n), np.empty(N_FUNCTIONALS)
+        roots = np.empty((ROWS_TOGETHER, n + 8))
+        for first in range(0, n2, ROWS_TOGETHER):
+            last = min(first + ROWS_TOGETHER, n2)
+            for j in range(first, last):
+                for k in range(n_alpha):
+                    row[k] = p[i, j, k]
+                for k in range(n_alpha, n):
+                    row[k] = row[0]
+                scale = inverse[i, j] if inverse.size > 1 else 0.0
+                read_row(
+                    row, weights[0], weights[1], weights[2], scale, roots[j - first],
+                    sums,
+                )  # fmt: skip
+                make_periodic(roots[j - first], n_alpha)
+                for c in range(N_FUNCTIONALS):
+                    out[c, i, j] = sums[c]
+            for j in range(first, last):
+                out[3, i, j] = squared_differences(roots[j - first], weights[2])
 
 
 @njit(cache=True, parallel=True, fastmath={"contract"}, error_model="numpy")
