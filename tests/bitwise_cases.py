@@ -1,6 +1,7 @@
 """Digests of results of every kind; as a script it prints them as JSON.
 
-Run as a script, it computes them with the threads that the environment asks for.
+Run as a script, it computes those named, or all, with the threads that the environment
+asks for.
 """
 
 import hashlib
@@ -167,4 +168,5 @@ if __name__ == "__main__":
     # Runs on grids as small as these would be left to one thread.
     _threads.CELLS_PER_THREAD = 1
     warnings.simplefilter("ignore")
-    json.dump({name: digest_of(name) for name in CASES}, sys.stdout)
+    names = sys.argv[1:] or CASES
+    json.dump({name: digest_of(name) for name in names}, sys.stdout)

@@ -6,6 +6,10 @@ handful of arrays. Inner loops that combine many rows therefore say it themselve
 `take` reads four values, `put` writes them, `+ - * /` act on all four. Outside
 compiled code the same functions act on numpy arrays of four values.
 
+`a * b + c` is rounded once. Where two products meet, as in `a * b + c * d`, a compiler
+chooses which of them is rounded, and chooses differently for a kernel that has just
+been compiled and for the same one read from numba's cache: `fused` leaves no choice.
+
 Numba's cache of a kernel does not see this file: clear it after a change here.
 """
 
@@ -77,6 +81,11 @@ def mantissa_and_exponent(lanes):
     mantissa, exponent = np.frexp(lanes)
     low = mantissa < np.sqrt(0.5)
     return np.where(low, 2.0 * mantissa, mantissa), exponent - 1.0 * low
+
+
+def fused(a, b, c):
+    """A b + c, rounded once; twice outside compiled code."""
+    return a * b + c
 
 
 def root(lanes):
@@ -206,15 +215,39 @@ def split_lanes(_, lanes):
     return types.UniTuple(lanes_type, 2)(lanes), code
 
 
+def vector_function(builder, name, n_arguments):
+    """LLVM's function of that name for vectors."""
+    kind = ir.FunctionType(VECTOR, [VECTOR] * n_arguments)
+    name = f"llvm.{name}.v{LANES}f64"
+    return cgutils.get_or_insert_function(builder.module, kind, name)
+
+
 @intrinsic
 def root_lanes(_, lanes):
     """`root` in compiled code."""
 
     def code(context, builder, signature, arguments):
-        square_root = cgutils.get_or_insert_function(
-            builder.module, ir.FunctionType(VECTOR, [VECTOR]), f"llvm.sqrt.v{LANES}f64"
-        )
-        return builder.call(square_root, arguments)
+        return builder.call(vector_function(builder, "sqrt", 1), arguments)
+
+    return lanes_type(lanes), code
+
+
+@intrinsic
+def fused_lanes(_, a, b, c):
+    """`fused` in compiled code."""
+
+    def code(context, builder, signature, arguments):
+        return builder.call(vector_function(builder, "fma", 3), arguments)
+
+    return lanes_type(a, b, c), code
+
+
+@intrinsic
+def opposite_lanes(_, lanes):
+    """−lanes in compiled code."""
+
+    def code(context, builder, signature, arguments):
+        return builder.fneg(arguments[0])
 
     return lanes_type(lanes), code
 
@@ -298,10 +331,24 @@ def compiled_root(lanes):
     return lambda lanes: root_lanes(lanes)
 
 
+@overload(fused, inline="always")
+def compiled_fused(a, b, c):
+    """Implementation for numba."""
+    return lambda a, b, c: fused_lanes(a, b, c)
+
+
 @overload(parts, inline="always")
 def compiled_parts(lanes):
     """Implementation for numba."""
     return lambda lanes: parts_of_lanes(lanes)
+
+
+@overload(operator.neg, inline="always")
+def compiled_opposite(lanes):
+    """−lanes."""
+    if lanes == lanes_type:
+        return lambda lanes: opposite_lanes(lanes)
+    return None
 
 
 @overload(operator.add, inline="always")

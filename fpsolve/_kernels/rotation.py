@@ -10,7 +10,7 @@ brought back. Batches have a fixed size, so that results do not depend on thread
 import numpy as np
 from numba import njit, prange
 
-from fpsolve._kernels.lanes import LANES, put, spread, take, transposed
+from fpsolve._kernels.lanes import LANES, fused, put, spread, take, transposed
 
 QUADS_PER_BATCH = 4
 ROWS_PER_BATCH = LANES * QUADS_PER_BATCH
@@ -179,8 +179,8 @@ def powers(direction, rows, phases):
         for r in range(0, n_rows, LANES):
             c, s = take(phases, (0, 1, r)), take(phases, (1, 1, r))
             real, imaginary = take(phases, (0, m - 1, r)), take(phases, (1, m - 1, r))
-            put(phases, (0, m, r), real * c - imaginary * s)
-            put(phases, (1, m, r), real * s + imaginary * c)
+            put(phases, (0, m, r), fused(real, c, -(imaginary * s)))
+            put(phases, (1, m, r), fused(real, s, imaginary * c))
 
 
 @njit(cache=True, fastmath={"contract"}, error_model="numpy")
@@ -195,8 +195,8 @@ def turn_in(spectrum, phases, modes):
             c, s = take(phases, (0, m, r)), take(phases, (1, m, r))
             cosine = take(spectrum, (0, m % 2, m // 2, r))
             sine = take(spectrum, (1, m % 2, m // 2, r))
-            put(modes, (m, 2 * r), cosine * c + sine * s)
-            put(modes, (m, 2 * r + LANES), cosine * s - sine * c)
+            put(modes, (m, 2 * r), fused(cosine, c, sine * s))
+            put(modes, (m, 2 * r + LANES), fused(cosine, s, -(sine * c)))
 
 
 @njit(cache=True, fastmath={"contract"}, error_model="numpy")
@@ -206,8 +206,8 @@ def turn_out(modes, phases, spectrum):
         for r in range(0, phases.shape[2], LANES):
             c, s = take(phases, (0, m, r)), take(phases, (1, m, r))
             real, imaginary = take(modes, (m, 2 * r)), take(modes, (m, 2 * r + LANES))
-            put(spectrum, (0, m % 2, m // 2, r), real * c + imaginary * s)
-            put(spectrum, (1, m % 2, m // 2, r), real * s - imaginary * c)
+            put(spectrum, (0, m % 2, m // 2, r), fused(real, c, imaginary * s))
+            put(spectrum, (1, m % 2, m // 2, r), fused(real, s, -(imaginary * c)))
 
 
 @njit(cache=True, fastmath={"contract"}, error_model="numpy")
