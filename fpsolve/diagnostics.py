@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from fpsolve._arrays import check_finite_numbers, check_numbers
 from fpsolve._checks import check_non_negative, check_one_of
-from fpsolve._kernels.functionals import N_FUNCTIONALS, row_functionals
 from fpsolve.errors import GridMismatchError
+from fpsolve.functionals import SMALLEST, RowFunctionals, inverse_of
 from fpsolve.grids import PhaseSpaceGrid, check_grid
 
 __all__ = [
@@ -29,17 +29,6 @@ __all__ = [
 Array = NDArray[np.float64]
 
 CELLS_PER_SLAB = 32768
-# Reference values below this carry no mass; they only have to be divisible.
-SMALLEST = 1e-300
-MOMENTS = (
-    "mean_xi1",
-    "mean_xi2",
-    "variance_xi1",
-    "variance_xi2",
-    "covariance",
-    "mean_cos_alpha",
-    "mean_sin_alpha",
-)
 # Staggered weights of order eight, from the nearest pair outward.
 DIFFERENCE = (1225 / 1024, -245 / 3072, 49 / 5120, -5 / 7168)
 MIDPOINT = (1225 / 2048, -245 / 2048, 49 / 2048, -5 / 2048)
@@ -129,43 +118,7 @@ def moments(p: Array, grid: PhaseSpaceGrid) -> dict[str, float]:
         mean_xi1, mean_xi2, variance_xi1, variance_xi2, covariance, mean_cos_alpha and
         mean_sin_alpha.
     """
-    return moments_of_rows(functionals(checked(p, grid), grid), grid)
-
-
-def functionals(p: Array, grid: PhaseSpaceGrid, inverse: Array | None = None) -> Array:
-    """Sums over α for every ξ; shape (7, n1, n2), see the kernel.
-
-    The last is Σ p ln(p inverse), inverse (n1, n2), and zero without it.
-    """
-    out = np.empty((N_FUNCTIONALS, *grid.shape[:2]))
-    inverse = np.ones((1, 1)) if inverse is None else inverse
-    row_functionals(p, np.cos(grid.alpha), np.sin(grid.alpha), inverse, out)
-    return out
-
-
-def inverse_of(reference: Array, ratio: float) -> Array:
-    """1/(ratio r), what `functionals` multiplies p by."""
-    inverse: Array = 1.0 / np.maximum(reference * ratio, SMALLEST)
-    return inverse
-
-
-def moments_of_rows(rows: Array, grid: PhaseSpaceGrid) -> dict[str, float]:
-    """Moments from the row functionals."""
-    total = rows[0].sum()
-    share = rows[0] / total
-    share1, share2 = share.sum(axis=1), share.sum(axis=0)
-    mean1, mean2 = float((share1 * grid.xi1).sum()), float((share2 * grid.xi2).sum())
-    away1, away2 = grid.xi1 - mean1, grid.xi2 - mean2
-    values = (
-        mean1,
-        mean2,
-        float((share1 * away1**2).sum()),
-        float((share2 * away2**2).sum()),
-        float(((share * away2).sum(axis=1) * away1).sum()),
-        float(rows[1].sum() / total),
-        float(rows[2].sum() / total),
-    )
-    return dict(zip(MOMENTS, values, strict=True))
+    return RowFunctionals(checked(p, grid), grid).moments()
 
 
 def relative_entropy(p: Array, grid: PhaseSpaceGrid, reference: Array) -> float:
@@ -195,17 +148,9 @@ def relative_entropy(p: Array, grid: PhaseSpaceGrid, reference: Array) -> float:
         return math.nan
     if reference.shape[2] == 1:
         inverse = inverse_of(reference[:, :, 0], ratio)
-        return entropy_of_rows(functionals(p, grid, inverse), grid, ratio)
+        return RowFunctionals(p, grid, inverse).relative_entropy(ratio)
     total = sum(entropy_of_slab(p[k], reference[k] * ratio) for k in slabs(grid))
     return (total + float(masses[0]) * math.log(ratio)) * grid.cell_volume
-
-
-def entropy_of_rows(rows: Array, grid: PhaseSpaceGrid, ratio: float) -> float:
-    """H(p|r) from row functionals made with `inverse_of(r, ratio)`."""
-    total = float(rows[0].sum())
-    if not (total > 0.0 and ratio > 0.0):
-        return math.nan
-    return (float(rows[6].sum()) + total * math.log(ratio)) * grid.cell_volume
 
 
 def entropy_of_slab(p: Array, reference: Array) -> float:
@@ -260,16 +205,10 @@ def entropy_dissipation(
     """
     p, noise = checked(p, grid), check_non_negative("noise", noise)
     if reference is None or as_field(reference, grid).shape[2] == 1:
-        return dissipation_of_rows(functionals(p, grid), grid, noise)
+        return RowFunctionals(p, grid).entropy_dissipation(noise)
     root = np.sqrt(np.maximum(p, 0.0) / np.maximum(reference, SMALLEST))
     slope, weight = staggered(root, DIFFERENCE, -1.0), staggered(reference, MIDPOINT, 1)
     total = float((weight * slope**2).sum()) / grid.spacing[2] ** 2
-    return 2.0 * noise**2 * total * grid.cell_volume
-
-
-def dissipation_of_rows(rows: Array, grid: PhaseSpaceGrid, noise: float) -> float:
-    """Dissipation from the row functionals."""
-    total = float(rows[3].sum()) / grid.spacing[2] ** 2
     return 2.0 * noise**2 * total * grid.cell_volume
 
 

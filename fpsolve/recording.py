@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fpsolve import diagnostics
+from fpsolve.functionals import RowFunctionals, inverse_of
 from fpsolve.grids import PhaseSpaceGrid
 from fpsolve.models import LayDownModel
 
@@ -53,39 +54,39 @@ class Recorder:
             field = diagnostics.as_field(reference, grid)
             total = diagnostics.reference_sum(field, grid) * grid.cell_volume
             self.ratio = 1.0 / total if total > 0.0 else np.nan
-            self.inverse = diagnostics.inverse_of(reference, self.ratio)
+            self.inverse = inverse_of(reference, self.ratio)
         # The first record stays when a caller takes `rows` elsewhere.
         self.first: dict[str, float] = {}
         self.rows: list[dict[str, float]] = []
 
     def record(self, p: Array, s: float, **extra: float) -> dict[str, float]:
         """Add one record and return it."""
-        sums = diagnostics.functionals(p, self.grid, self.inverse)
-        mass = float(sums[0].sum()) * self.grid.cell_volume
+        found = RowFunctionals(p, self.grid, self.inverse)
         values = {
             "s": s,
-            "mass": mass,
-            **self._entropy(p, sums, mass),
-            "minimum": float(sums[4].min()),
-            "negative_mass": float(sums[5].sum()) * self.grid.cell_volume,
-            "boundary_mass": diagnostics.ring_share(np.abs(sums[0])),
+            "mass": found.mass(),
+            **self._entropy(p, found),
+            "minimum": found.minimum(),
+            "negative_mass": found.negative_mass(),
+            "boundary_mass": diagnostics.ring_share(np.abs(found.rows[0])),
             **extra,
-            **diagnostics.moments_of_rows(sums, self.grid),
+            **found.moments(),
         }
         self.first = self.first or values
         self.rows.append(values)
         return values
 
-    def _entropy(self, p: Array, sums: Array, mass: float) -> dict[str, float]:
-        if self.reference is None or not math.isfinite(mass):
-            return {"relative_entropy": np.nan, "entropy_dissipation": np.nan}
+    def _entropy(self, p: Array, found: RowFunctionals) -> dict[str, float]:
+        lost = entropy = math.nan
         noise = self.model.noise
-        if self.inverse is None:
-            lost = diagnostics.entropy_dissipation(p, self.grid, noise, self.reference)
-            entropy = diagnostics.relative_entropy(p, self.grid, self.reference)
-        else:
-            lost = diagnostics.dissipation_of_rows(sums, self.grid, noise)
-            entropy = diagnostics.entropy_of_rows(sums, self.grid, self.ratio)
+        if self.reference is not None and math.isfinite(found.mass()):
+            if self.inverse is None:
+                arguments = p, self.grid, noise, self.reference
+                lost = diagnostics.entropy_dissipation(*arguments)
+                entropy = diagnostics.relative_entropy(p, self.grid, self.reference)
+            else:
+                lost = found.entropy_dissipation(noise)
+                entropy = found.relative_entropy(self.ratio)
         return {"relative_entropy": entropy, "entropy_dissipation": lost}
 
     def floor(self) -> float:

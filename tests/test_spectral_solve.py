@@ -8,8 +8,8 @@ from problems import DecayingCirculation, asymmetric_start
 
 import fpsolve as fp
 from fpsolve._kernels import ladder
-from fpsolve.diagnostics import MOMENTS
 from fpsolve.errors import MemoryLimitError, ToleranceError
+from fpsolve.functionals import MOMENTS
 from fpsolve.paths import EquilibriumLaw, GaussianLaw, PointLaw
 from fpsolve.spectral import quadrature
 from fpsolve.spectral.evolution import spectral_solve

@@ -16,7 +16,7 @@ import numpy as np
 from reporting import Report
 
 import fpsolve as fp
-from fpsolve.diagnostics import MOMENTS
+from fpsolve.functionals import MOMENTS
 from fpsolve.paths import GaussianLaw
 from fpsolve.spectral.evolution import spectral_solve
 from fpsolve.spectral.solution import SpectralSolution

@@ -143,7 +143,8 @@ def row_functionals(p, cosine, sine, inverse, out):
     weights[2, :n_alpha] = 1.0
     for i in prange(n1):
         row, sums = np.empty(n), np.empty(N_FUNCTIONALS)
-        roots = np.empty((ROWS_TOGETHER, n + 8))
+        # What is beyond a period is read with weight zero: it must not be NaN.
+        roots = np.zeros((ROWS_TOGETHER, n + 8))
         for first in range(0, n2, ROWS_TOGETHER):
             last = min(first + ROWS_TOGETHER, n2)
             for j in range(first, last):

@@ -12,8 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from fpsolve._arrays import check_numbers
 from fpsolve._blas import one_blas_thread
-from fpsolve.diagnostics import MOMENTS
 from fpsolve.errors import MemoryLimitError, ToleranceError
+from fpsolve.functionals import MOMENTS
 from fpsolve.grids import PhaseSpaceGrid
 from fpsolve.memory import allowed_memory
 from fpsolve.models import LayDownModel

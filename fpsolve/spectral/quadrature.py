@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve.diagnostics import MOMENTS
+from fpsolve.functionals import MOMENTS
 from fpsolve.grids import PhaseSpaceGrid
 from fpsolve.potentials import QuadraticPotential
 from fpsolve.spectral.expansion import Expansion

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve import diagnostics
+from fpsolve import functionals
 from fpsolve.models import LayDownModel
 from fpsolve.solution import Solution
 from fpsolve.steady_state import SteadyState
@@ -26,7 +26,7 @@ __all__ = [
 
 Array = NDArray[np.float64]
 
-MOMENTS = (*diagnostics.MOMENTS, "mean_square")
+MOMENTS = (*functionals.MOMENTS, "mean_square")
 # Arclengths closer than this, relative to their size, are the same.
 SAME = 1e-9
 
@@ -125,7 +125,7 @@ def _recorded(
     """Moments of a run at one of its records, and their Richardson estimates."""
     estimates = solution.errors or {}
     moments, errors = {}, {}
-    for name in diagnostics.MOMENTS:
+    for name in functionals.MOMENTS:
         moments[name] = float(solution.series[name][record])
         known = name in estimates
         errors[name] = float(estimates[name][record]) if known else math.nan
