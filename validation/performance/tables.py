@@ -100,7 +100,8 @@ class Tables:
         rows = self.rows(noise)
         mine = [row for row in rows if row["solver"].startswith(OURS)]
         peers = [row for row in rows if not row["solver"].startswith(OURS)]
-        print(f"{'error below':>11}  {'ours':>8}  {'best peer':>9}  cheapest")
+        heads = f"{'error below':>11}  {'ours':>8}  {'best peer':>9}  {'times':>5}"
+        print(f"{heads}  cheapest")
         for level in LEVELS:
             ours, peer = cheapest(mine, level), cheapest(peers, level)
             if ours or peer:
@@ -255,13 +256,14 @@ def cost(row: dict[str, Any] | None) -> str:
 
 
 def win(ours: dict[str, Any] | None, peer: dict[str, Any] | None) -> str:
-    """Which of two runs is cheaper, and how much."""
+    """How many times cheaper the cheaper of two runs is, and which it is."""
     if ours is None or (peer is not None and peer["cpu"] < ours["cpu"]):
         assert peer is not None
-        by = f", {ours['cpu'] / peer['cpu']:.2g} times" if ours else ", alone"
-        return f"peer: {peer['solver']}, {grid(peer['shape'])}{by}"
-    by = f", {peer['cpu'] / ours['cpu']:.2g} times" if peer else ", alone"
-    return f"{ours['solver']}, {grid(ours['shape'])}{by}"
+        best, other, label = peer, ours, f"peer: {peer['solver']}"
+    else:
+        best, other, label = ours, peer, ours["solver"]
+    times = f"{other['cpu'] / best['cpu']:.2g}" if other else "alone"
+    return f"{times:>5}  {label}, {grid(best['shape'])}"
 
 
 def judged(
@@ -269,7 +271,7 @@ def judged(
 ) -> str:
     """One line: the cheapest run that is accurate enough, and whether it is enough."""
     family, extrapolated, error_factor, speed = aim
-    text = f"{family or 'extrapolated'}, error / {error_factor}, CPU time / {speed}"
+    name = family or "extrapolated"
     candidates = [
         row
         for row in rows
@@ -278,13 +280,14 @@ def judged(
     ]
     best = cheapest(candidates, base["l1_error"] / error_factor)
     if best is None:
-        return f"MISSED  {text}: no run is accurate enough"
+        return f"MISSED  {name}: no run reaches error / {error_factor}"
     reached = base["cpu"] / best["cpu"]
     word = "reached" if reached >= speed else "MISSED "
+    accuracy = base["l1_error"] / best["l1_error"]
     return (
-        f"{word} {text}: {reached:.0f} times less at an error "
-        f"{base['l1_error'] / best['l1_error']:.3g} times smaller "
-        f"({best['solver']}, {grid(best['shape'])})"
+        f"{word} {name}: CPU time / {reached:.0f} (aim / {speed}), "
+        f"error / {accuracy:.3g} (aim / {error_factor})\n"
+        f"        by {best['solver']}, {grid(best['shape'])}"
     )
 
 
