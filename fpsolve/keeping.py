@@ -24,16 +24,20 @@ class MemoryKeeper:
     ----------
     shape : (int, int, int)
         Shape of a density.
+    n_saves : int
+        Densities that a whole pass saves.
+
+    Attributes
+    ----------
+    n_saved : int
+        Densities saved so far.
     """
 
-    def __init__(self, shape: tuple[int, ...]) -> None:
-        self.shape = shape
-        self.saved: list[Array] = []
-
-    @property
-    def n_saved(self) -> int:
-        """Densities saved so far."""
-        return len(self.saved)
+    def __init__(self, shape: tuple[int, ...], n_saves: int) -> None:
+        # Memory that is asked for is only taken when it is written; a list of densities
+        # would have to be held twice to become an array.
+        self.kept = np.empty((n_saves, *shape))
+        self.n_saved = 0
 
     def begin(self, run: Run) -> int | None:
         """Take a pass to where it goes on; None at its beginning."""
@@ -41,7 +45,8 @@ class MemoryKeeper:
 
     def save(self, p: Array) -> None:
         """Keep a copy of a density."""
-        self.saved.append(p.copy())
+        self.kept[self.n_saved] = p
+        self.n_saved += 1
 
     def absorb(self, rows: list[Row]) -> None:
         """Take rows out of memory that are kept elsewhere."""
@@ -62,7 +67,7 @@ class MemoryKeeper:
 
     def densities(self) -> Any:
         """The saved densities; shape (n_saved, n1, n2, n_alpha)."""
-        return np.array(self.saved).reshape(-1, *self.shape)
+        return self.kept[: self.n_saved]
 
 
 class MemoryKeepers:
@@ -73,4 +78,4 @@ class MemoryKeepers:
 
     def keeper(self, name: str, schedule: Schedule) -> MemoryKeeper:
         """Return what keeps the pass of that name."""
-        return MemoryKeeper(self.shape)
+        return MemoryKeeper(self.shape, len(schedule.saves))
