@@ -77,16 +77,15 @@ class Recorder:
         return values
 
     def _entropy(self, p: Array, found: RowFunctionals) -> dict[str, float]:
-        lost = entropy = math.nan
-        noise = self.model.noise
-        if self.reference is not None and math.isfinite(found.mass()):
-            if self.inverse is None:
-                arguments = p, self.grid, noise, self.reference
-                lost = diagnostics.entropy_dissipation(*arguments)
-                entropy = diagnostics.relative_entropy(p, self.grid, self.reference)
-            else:
-                lost = found.entropy_dissipation(noise)
-                entropy = found.relative_entropy(self.ratio)
+        if self.reference is None or not math.isfinite(found.mass()):
+            lost = entropy = math.nan
+        elif self.inverse is None:
+            arguments = p, self.grid, self.model.noise, self.reference
+            lost = diagnostics.entropy_dissipation(*arguments)
+            entropy = diagnostics.relative_entropy(p, self.grid, self.reference)
+        else:
+            lost = found.entropy_dissipation(self.model.noise)
+            entropy = found.relative_entropy(self.ratio)
         return {"relative_entropy": entropy, "entropy_dissipation": lost}
 
     def floor(self) -> float:
