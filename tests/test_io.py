@@ -3,6 +3,7 @@
 import json
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -19,6 +20,8 @@ from fpsolve.curves import (
     TabulatedCurve,
 )
 from fpsolve.errors import FileFormatError
+from fpsolve.io import atomic
+from fpsolve.io.writing import write_dataset
 from fpsolve.models import LayDownModel
 from fpsolve.potentials import (
     CallablePotential,
@@ -317,3 +320,27 @@ def test_a_missing_variable_is_named(solution, tmp_path):
 def test_a_file_that_is_not_there_is_named(tmp_path):
     with pytest.raises(FileNotFoundError, match=r"`path` must exist to be read.*none"):
         io.load(tmp_path / "none.nc")
+
+
+def on_a_disk_with(free, monkeypatch):
+    def usage(path):
+        return SimpleNamespace(free=free)
+
+    monkeypatch.setattr(atomic.shutil, "disk_usage", usage)
+
+
+def test_a_file_that_does_not_fit_is_refused_before_hdf5_meets_the_full_disk(
+    solution, tmp_path, monkeypatch
+):
+    # After a failed write HDF5 ends the process at some later time.
+    size = solution.densities.nbytes
+    path = tmp_path / "run.nc"
+    on_a_disk_with(size, monkeypatch)
+    with pytest.raises(OSError, match=r"No space left on device \(\d+ MiB needed, "):
+        solution.save(path)
+    with pytest.raises(OSError, match="No space left on device"):
+        write_dataset(io.to_xarray(solution), path)
+    assert not list(tmp_path.iterdir())
+    # Series, coordinates and a mebibyte for what describes them.
+    on_a_disk_with(size + 2**21, monkeypatch)
+    assert solution.save(path).is_file()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import shutil
 import tempfile
@@ -11,7 +12,10 @@ from pathlib import Path
 
 from fpsolve._checks import check_path
 
-__all__ = ["atomic_path", "check_folder", "made_folder"]
+__all__ = ["atomic_path", "check_folder", "check_room", "made_folder"]
+
+# Bytes of attributes, coordinates and the tables of HDF5, generously.
+DESCRIPTION = 2**20
 
 
 @contextmanager
@@ -93,6 +97,19 @@ def made_folder(path: str | os.PathLike[str], name: str = "directory") -> Path:
     folder = check_folder(path, name)
     folder.mkdir(parents=True, exist_ok=True)
     return folder
+
+
+def check_room(path: Path, n_bytes: int) -> None:
+    """Raise OSError unless a file of n_bytes and what describes it fit on the disk.
+
+    To be asked before netCDF is written: HDF5 ends the process, without a word, some
+    time after it met a full disk.
+    """
+    free, needed = shutil.disk_usage(path.parent).free, n_bytes + DESCRIPTION
+    if not needed <= free:
+        mebibytes = f"{needed / 2**20:.0f} MiB needed, {free / 2**20:.0f} MiB free"
+        reason = f"{os.strerror(errno.ENOSPC)} ({mebibytes})"
+        raise OSError(errno.ENOSPC, reason, str(path))
 
 
 def is_store(path: Path) -> bool:

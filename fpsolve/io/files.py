@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from fpsolve._checks import check_path
 from fpsolve.errors import FileFormatError
-from fpsolve.io.atomic import atomic_path
+from fpsolve.io.atomic import atomic_path, check_room
 from fpsolve.io.checksums import stamped, verified
 from fpsolve.io.dataset import from_xarray, to_xarray
 from fpsolve.io.streaming import append_densities, lazy_densities, without_densities
@@ -85,6 +85,7 @@ def save(
         if engine == "zarr":
             dataset.to_zarr(draft, mode="w", consolidated=False)
         else:
+            check_room(path, _plain_bytes(dataset) + getattr(lazy, "nbytes", 0))
             dataset.to_netcdf(draft, engine="h5netcdf", encoding=_encoding(dataset))
         if lazy is not None:
             append_densities(draft, engine, lazy)
@@ -233,6 +234,12 @@ def _encoding(dataset: xr.Dataset) -> dict[Any, dict[str, Any]]:
         name: {"_FillValue": None, **_compression(variable)}
         for name, variable in dataset.variables.items()
     }
+
+
+def _plain_bytes(dataset: xr.Dataset) -> int:
+    # What is compressed may take next to nothing.
+    variables = dataset.variables.values()
+    return sum(one.nbytes for one in variables if not _compression(one))
 
 
 def _compression(variable: xr.Variable) -> dict[str, Any]:

@@ -6,7 +6,7 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from fpsolve.io.atomic import atomic_path
+from fpsolve.io.atomic import atomic_path, check_room
 from fpsolve.io.checksums import stamped
 
 if TYPE_CHECKING:
@@ -31,5 +31,6 @@ def write_dataset(dataset: xr.Dataset, path: str | os.PathLike[str]) -> Path:
         if path.suffix == ".zarr":
             stamped(dataset).to_zarr(draft, mode="w", consolidated=False)
         else:
+            check_room(path, dataset.nbytes)
             stamped(dataset).to_netcdf(draft, engine="h5netcdf")
     return path
