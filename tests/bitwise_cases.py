@@ -13,6 +13,7 @@ import numpy as np
 
 import fpsolve as fp
 from fpsolve import _threads
+from fpsolve.schemes.rotation import RotationDiffusion
 
 GRID = fp.PhaseSpaceGrid(5.0, (20, 16, 16))
 QUADRATIC, LINEAR = fp.QuadraticPotential(), fp.LinearPotential()
@@ -118,6 +119,21 @@ def spectral_solve():
     return digest(found.relative_entropy, found.mass, found.mean_xi1)
 
 
+def rotation():
+    """R½ D R½ alone, which is one kernel and that of its matrices."""
+    turned = np.empty_like(START)
+    RotationDiffusion(MODEL, GRID, balanced=True)(START, 0.0, 0.25, turned)
+    return digest(turned)
+
+
+def steps():
+    """A few steps of the default sampler alone."""
+    found = fp.sample_paths(BELT, 300, 1.0, 0.125, seed=3)
+    return digest(found.states)
+
+
+# Kernels that a test compiles once more.
+KERNELS = {"kernel of rotation": (rotation,), "kernel of paths": (steps,)}
 # Everything that computes, by name.
 CASES = {
     **{f"drift_kick, {name}": (drift_kick, options)
@@ -160,7 +176,7 @@ THREADED = [name for name in CASES if name.startswith(
 
 def digest_of(name):
     """Digest of one case."""
-    compute, *arguments = CASES[name]
+    compute, *arguments = {**CASES, **KERNELS}[name]
     return compute(*arguments)
 
 

@@ -87,7 +87,12 @@ RESULTS = {
         QUADRATIC, [1.4], quick=True, parts=["gap"], workers=0
     ),
     "small noise": lambda: studies.small_noise_limit(
-        QUADRATIC, [0.8], belt_speed_scales=[0.0], n_paths=50, quick=True
+        QUADRATIC,
+        [0.8],
+        belt_speed_scales=[0.0],
+        slow_length=0.25,
+        n_paths=50,
+        quick=True,
     ),
     "small noise, spectrum": lambda: studies.small_noise_spectrum(QUADRATIC, [0.8]),
     "energy tables": lambda: tables_dataset(ENERGY, 3, 2),

@@ -1,4 +1,4 @@
-"""Run every validation script; `--quick` is what continuous integration runs."""
+"""Run every validation script; `--quick --without nightly` is what a push runs."""
 
 from __future__ import annotations
 
@@ -27,6 +27,21 @@ SCRIPTS = (
     "performance/paths.py",
     "performance/reduced.py",
 )
+# Kills by the dozen, and times that a shared machine only blurs: every night.
+NIGHTLY = {
+    "reliability/kill_and_resume.py",
+    "performance/run.py",
+    "performance/paths.py",
+    "performance/reduced.py",
+}
+
+
+def chosen(options: argparse.Namespace) -> list[str]:
+    """The scripts that are asked for, in their order."""
+    if options.only == "nightly":
+        return [script for script in SCRIPTS if script in NIGHTLY]
+    left_out = NIGHTLY if options.without == "nightly" else set()
+    return [script for script in SCRIPTS if script not in left_out]
 
 
 def run(script: str, arguments: list[str], alone: bool) -> bool:
@@ -51,13 +66,16 @@ def main() -> None:
     parser.add_argument(
         "--jobs", type=int, default=1, help="scripts side by side; times suffer (1)"
     )
+    parser.add_argument("--only", choices=["nightly"], help="run these alone")
+    parser.add_argument("--without", choices=["nightly"], help="leave these out")
     options = parser.parse_args()
+    scripts = chosen(options)
     arguments = ["--quick"] if options.quick else []
     with ThreadPoolExecutor(options.jobs) as pool:
         ended_well = list(
-            pool.map(lambda script: run(script, arguments, options.jobs == 1), SCRIPTS)
+            pool.map(lambda script: run(script, arguments, options.jobs == 1), scripts)
         )
-    failed = [one for one, well in zip(SCRIPTS, ended_well, strict=True) if not well]
+    failed = [one for one, well in zip(scripts, ended_well, strict=True) if not well]
     if failed:
         sys.exit(f"failed: {', '.join(failed)}")
 
