@@ -2,17 +2,27 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from fpsolve import diagnostics
 from fpsolve.densities import CombinedDensities, LazyDensities
 from fpsolve.solution import Solution
 
-__all__ = ["extrapolated"]
+__all__ = ["extrapolated", "largest_nearby"]
 
+Array = NDArray[np.float64]
+
+# Beyond these the angle forgets its direction, or the nozzle turns, within a step: the
+# expansion in ds does not hold, and neither does the gain of an order.
+LARGEST_DIFFUSION, LARGEST_TURN = 5.0, 3.0
+# Half width of the window of an estimate, relative to that of the box: a quarter turn
+# of a fibre, for a box of four to eight throwing ranges, lasts longer.
+_WINDOW = 1 / 6
 # These are not approximations of anything that depends on ds: the coordinate, and
 # what describes the finer run itself.
 NOT_EXTRAPOLATED = (
@@ -33,7 +43,10 @@ def extrapolated(coarse: Solution, fine: Solution, order: int) -> Solution:
     non-negative where the scheme is; an extrapolated density need not be. The
     estimate belongs to the finer run and bounds the error of the extrapolated values
     as long as the runs are in the asymptotic range and interpolation errors do not
-    dominate.
+    dominate. Where the difference of a scalar changes its sign it says nothing: the
+    estimate is the largest within a sixth of the half width of the box. Out of the
+    asymptotic range (A² ds > 5, or a nozzle that turns by more than 3 rad in ds) it is
+    the whole difference, which covers from order one on, and a warning says so.
 
     Parameters
     ----------
@@ -43,14 +56,16 @@ def extrapolated(coarse: Solution, fine: Solution, order: int) -> Solution:
         Order q of the scheme in ds.
     """
     gain = 1.0 / (2**order - 1)
+    allowed = gain if _resolved(coarse) else 1.0
     series, errors = dict(fine.series), {}
+    reach = _WINDOW * min(fine.grid.half_widths)
     for name, values in fine.series.items():
         change = values - coarse.series[name]
-        errors[name] = gain * np.abs(change)
+        errors[name] = allowed * largest_nearby(fine.s, np.abs(change), reach)
         if name not in NOT_EXTRAPOLATED:
             series[name] = values + gain * change
     distances = [
-        gain * diagnostics.l1_distance(p, q, fine.grid)
+        allowed * diagnostics.l1_distance(p, q, fine.grid)
         for p, q in zip(fine.densities, coarse.densities, strict=True)
     ]
     errors["density_l1"] = np.array(distances)
@@ -66,6 +81,39 @@ def extrapolated(coarse: Solution, fine: Solution, order: int) -> Solution:
         errors=errors,
         provenance=provenance,
     )
+
+
+def _resolved(coarse: Solution) -> bool:
+    """Whether errors are a power of ds; a warning tells if not."""
+    model, ds = coarse.model, coarse.ds
+    if model is None:
+        return True
+    turn = abs(getattr(model.curve, "angular_speed", 0.0)) * ds
+    diffusion = model.noise**2 * ds
+    if diffusion <= LARGEST_DIFFUSION and turn <= LARGEST_TURN:
+        return True
+    longest = ds / max(diffusion / LARGEST_DIFFUSION, turn / LARGEST_TURN)
+    warnings.warn(
+        f"`ds` = {ds:g} is long: A² ds = {diffusion:.3g} (at most "
+        f"{LARGEST_DIFFUSION:g}) and the nozzle turns by {turn:.3g} (at most "
+        f"{LARGEST_TURN:g}); errors of the extrapolated run may exceed their "
+        f"estimates; take ds below {longest:.3g}",
+        UserWarning,
+        stacklevel=5,
+    )
+    return False
+
+
+def largest_nearby(s: Array, values: Array, reach: float) -> Array:
+    """max of `values` over |s′ − s| ≤ reach, neighbours included; s ascending."""
+    n = s.size
+    first = np.minimum(np.searchsorted(s, s - reach), np.maximum(np.arange(n) - 1, 0))
+    last = np.maximum(np.searchsorted(s, s + reach, "right"), np.arange(n) + 2)
+    bounds = np.stack([first, np.minimum(last, n)], axis=1).ravel()
+    # An end of its own, since a range must not end behind the array.
+    padded = np.append(values, -np.inf)
+    found: Array = np.maximum.reduceat(padded, bounds)[::2]
+    return found
 
 
 def _combined(fine: Any, coarse: Any, gain: float) -> Any:

@@ -6,7 +6,9 @@ from orders import assert_order, measure_order
 from problems import DecayingCirculation
 
 from fpsolve import initial
+from fpsolve.curves import RotatingNozzle
 from fpsolve.diagnostics import l1_distance, mass, moments, relative_entropy
+from fpsolve.extrapolation import largest_nearby
 from fpsolve.grids import PhaseSpaceGrid
 from fpsolve.models import LayDownModel
 from fpsolve.potentials import QuadraticPotential
@@ -96,3 +98,49 @@ def test_extrapolated_solutions_carry_an_estimate_for_everything():
     assert solution.ds == 0.125
     # 4 steps of ds and 8 of ds/2.
     assert solution.provenance["n_steps"] == 12
+
+
+# The finest has errors a hundred times below those that are estimated.
+SHORT = {"ds": 1 / 128, "boundary_tolerance": 1.0}
+
+
+@pytest.mark.parametrize(("noise", "ds"), [(4.0, 0.25), (4.0, 0.5), (8.0, 0.25)])
+def test_estimates_cover_where_differences_change_sign_and_steps_are_long(noise, ds):
+    # Richardson alone was 11 times too small for E ξ1 at A² ds = 4, where its error
+    # passes through zero, and 8 times for H at A² ds = 16.
+    grid = PhaseSpaceGrid(5.0, (20, 20, 16))
+    p0 = initial.gaussian(grid, (1.0, 0.3), 0.6, 1.0, 2.0)
+    scheme = drift_kick(LayDownModel(QuadraticPotential(), noise), grid)
+    exact = solve(scheme, p0, (0.0, 1.0), **SHORT)
+    run = {"ds": ds, "extrapolate": True, "boundary_tolerance": 1.0}
+    if noise**2 * ds > 5:
+        told = rf"A² ds = {noise**2 * ds:g} \(at most 5\).*take ds below"
+        with pytest.warns(UserWarning, match=told):
+            found = solve(scheme, p0, (0.0, 1.0), **run)
+    else:
+        found = solve(scheme, p0, (0.0, 1.0), **run)
+    error = l1_distance(found.final, exact.final, grid)
+    assert error < found.errors["density_l1"][-1]
+    for name in ("mean_xi1", "mean_xi2", "mean_cos_alpha", "relative_entropy"):
+        for place, s in enumerate(found.s[1:], start=1):
+            true = exact.series[name][round(s * 128)]
+            assert abs(found.series[name][place] - true) < found.errors[name][place]
+
+
+def test_a_nozzle_that_turns_by_radians_in_a_step_is_told():
+    model = LayDownModel(QuadraticPotential(), 1.0, RotatingNozzle(0.0, 0.1, 16.0))
+    with pytest.warns(UserWarning, match=r"turns by 4 \(at most 3\).*below 0\.188"):
+        solve(
+            drift_kick(model, GRID), P0, (0.0, 0.5), 0.25, extrapolate=True,
+            boundary_tolerance=1.0,
+        )  # fmt: skip
+
+
+def test_the_largest_nearby_is_that_of_a_window_and_of_the_neighbours():
+    s, values = (
+        np.array([0.0, 1.0, 2.0, 3.0, 10.0]),
+        np.array([1.0, 5.0, 2.0, 3.0, 0.5]),
+    )
+    assert largest_nearby(s, values, 0.1).tolist() == [5.0, 5.0, 5.0, 3.0, 3.0]
+    assert largest_nearby(s, values, 2.0).tolist() == [5.0, 5.0, 5.0, 5.0, 3.0]
+    assert largest_nearby(s[:1], values[:1], 1.0).tolist() == [1.0]
