@@ -100,7 +100,7 @@ def marginal(p: Array, grid: PhaseSpaceGrid, which: str = "xi") -> Array:
     }
     check_one_of("which", which, integrals)
     axes, measure = integrals[which]
-    result: Array = np.asarray(p).sum(axis=axes) * measure
+    result: Array = checked(p, grid).sum(axis=axes) * measure
     return result
 
 

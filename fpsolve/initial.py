@@ -18,6 +18,7 @@ from fpsolve._checks import (
     check_kind,
     check_non_negative,
     check_pair,
+    shown,
 )
 from fpsolve.grids import PhaseSpaceGrid, check_grid
 from fpsolve.potentials import Potential
@@ -61,7 +62,8 @@ def gaussian(
     ------
     ValueError
         If the mean lies outside the box, the variance is not positive definite, the
-        concentration is negative, or it is positive without an angle.
+        concentration is negative, or it is positive without an angle; also if the
+        density is so narrow that it vanishes at every cell centre.
 
     Warns
     -----
@@ -82,7 +84,15 @@ def gaussian(
     )
     plane = np.exp(-exponent) / (2 * math.pi * math.sqrt(np.linalg.det(covariance)))
     p = plane * _von_mises(alpha, angle, concentration)
-    _warn_when_badly_sampled(grid, float(p.sum()) * grid.cell_volume)
+    mass = float(p.sum()) * grid.cell_volume
+    if not mass > 0:
+        raise ValueError(
+            "`variance` and `concentration` must leave mass on the cells, got "
+            f"{shown(np.asarray(variance).tolist())} and {concentration:g}, which "
+            f"vanish at every centre of cells of {_cells_text(grid)}; refine `shape`, "
+            "or begin with a wider density."
+        )
+    _warn_when_badly_sampled(grid, mass)
     return _normalised(grid, p)
 
 
@@ -209,8 +219,11 @@ def _warn_when_badly_sampled(grid: PhaseSpaceGrid, mass: float) -> None:
         warnings.warn(
             f"the sampled Gaussian had mass {mass:.3g} before normalisation: it is cut "
             f"by the box of half widths {grid.half_widths} or too narrow for cells of "
-            f"{tuple(round(step, 4) for step in grid.spacing)}; enlarge `half_width` "
-            "or refine `shape`.",
+            f"{_cells_text(grid)}; enlarge `half_width` or refine `shape`.",
             UserWarning,
             stacklevel=3,
         )
+
+
+def _cells_text(grid: PhaseSpaceGrid) -> str:
+    return str(tuple(round(step, 4) for step in grid.spacing))

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from fpsolve._arrays import check_numbers
 from fpsolve._checks import check_kind, check_non_negative, construct, shown
 from fpsolve.curves import Curve, FixedBelt, curve_from_dict
 from fpsolve.potentials import Potential, potential_from_dict
@@ -110,6 +111,7 @@ class LayDownModel:
             The first two in the shape of `alpha`, on which alone they depend, the
             third in the broadcast shape of all coordinates.
         """
+        alpha = check_numbers("alpha", alpha)
         cosine, sine = np.cos(alpha), np.sin(alpha)
         slope1, slope2 = self.potential.gradient(xi1, xi2)
         curve1, curve2 = self.curve.velocity(s)

@@ -8,6 +8,8 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from fpsolve._arrays import check_finite_numbers
+from fpsolve._checks import check_finite
 from fpsolve.curves.curve import Curve, check_speed
 
 __all__ = ["FixedBelt", "MovingBelt"]
@@ -30,14 +32,17 @@ class FixedBelt(Curve):
 
     def position(self, s: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """(0, 0)."""
-        return np.zeros(np.shape(s)), np.zeros(np.shape(s))
+        shape = check_finite_numbers("s", s).shape
+        return np.zeros(shape), np.zeros(shape)
 
     def velocity(self, s: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """(0, 0)."""
-        return np.zeros(np.shape(s)), np.zeros(np.shape(s))
+        shape = check_finite_numbers("s", s).shape
+        return np.zeros(shape), np.zeros(shape)
 
     def displacement(self, s0: float, s1: float) -> tuple[float, float]:
         """(0, 0)."""
+        check_finite("s0", s0), check_finite("s1", s1)
         return 0.0, 0.0
 
     @property
@@ -89,14 +94,17 @@ class MovingBelt(Curve):
 
     def position(self, s: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """(-v s, 0)."""
-        return np.asarray(np.multiply(-self.speed, s)), np.zeros(np.shape(s))
+        s = check_finite_numbers("s", s)
+        return np.asarray(-self.speed * s), np.zeros(s.shape)
 
     def velocity(self, s: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """(-v, 0)."""
-        return np.full(np.shape(s), -self.speed), np.zeros(np.shape(s))
+        shape = check_finite_numbers("s", s).shape
+        return np.full(shape, -self.speed), np.zeros(shape)
 
     def displacement(self, s0: float, s1: float) -> tuple[float, float]:
         """(-v (s1 - s0), 0)."""
+        s0, s1 = check_finite("s0", s0), check_finite("s1", s1)
         return -self.speed * (s1 - s0), 0.0
 
     @property

@@ -10,6 +10,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from fpsolve._arrays import check_finite_numbers
 from fpsolve._checks import check_finite, check_non_negative
 from fpsolve.curves.curve import Curve, check_speed
 
@@ -36,7 +37,7 @@ class _Nozzle(Curve):
     def position(self, s: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """-v s e1 + (r1 cos(ωs + φ), r2 sin(ωs + φ))."""
         (radius1, radius2), angle = self.radii, self._angle(s)
-        along = radius1 * np.cos(angle) - self.speed * np.asarray(s, dtype=np.float64)
+        along = radius1 * np.cos(angle) - self.speed * check_finite_numbers("s", s)
         return np.asarray(along), np.asarray(radius2 * np.sin(angle))
 
     def velocity(self, s: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -49,6 +50,7 @@ class _Nozzle(Curve):
     def displacement(self, s0: float, s1: float) -> tuple[float, float]:
         """γ(s1) - γ(s0), by the sum formulas of sine and cosine."""
         radius1, radius2 = self.radii
+        s0, s1 = check_finite("s0", s0), check_finite("s1", s1)
         middle = self.angular_speed * 0.5 * (s0 + s1) + self.phase
         chord = 2 * math.sin(0.5 * self.angular_speed * (s1 - s0))
         along = -self.speed * (s1 - s0) - radius1 * chord * math.sin(middle)
@@ -89,7 +91,7 @@ class _Nozzle(Curve):
         return f"{self.angular_speed:g} s {sign} {abs(self.phase):g}"
 
     def _angle(self, s: ArrayLike) -> NDArray[np.float64]:
-        return self.angular_speed * np.asarray(s, dtype=np.float64) + self.phase
+        return self.angular_speed * check_finite_numbers("s", s) + self.phase
 
 
 def _times(radius: float, function: str, angle: str) -> str:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from fpsolve._checks import check_kind
 from fpsolve.comparisons import Comparison
 from fpsolve.comparisons.differences import FLOOR
 from fpsolve.comparisons.wording import verdict
@@ -51,7 +52,13 @@ def plot_comparison(comparison: Comparison) -> Figure:
     ----------
     comparison : Comparison
         From `fpsolve.compare`.
+
+    Raises
+    ------
+    TypeError
+        If it is something else.
     """
+    check_kind("comparison", comparison, Comparison, "it is what `compare` returns")
     dataset = comparison.dataset
     with paper_style():
         panels = [_draw_map, _draw_profiles] if _has_plane(dataset) else []

@@ -36,7 +36,8 @@ __all__ = ["check_movie", "movie"]
 
 _SUFFIXES = (".gif", ".mp4")
 _RESOLUTION = 120
-_FASTEST = 100
+# A GIF counts hundredths of a second, up to 65535 of them for a frame.
+_FASTEST, _SLOWEST = 100, 100 / 65535
 
 
 def movie(
@@ -99,6 +100,11 @@ def _writer(path: Path, fps: float) -> AbstractMovieWriter:
         raise ValueError(
             f"`fps` must be at most {_FASTEST}, got {fps:g}; a GIF counts hundredths "
             "of a second."
+        )
+    if not fps >= _SLOWEST:
+        raise ValueError(
+            f"`fps` must be at least {_SLOWEST:.2g}, got {fps:g}; a frame of a GIF "
+            "lasts eleven minutes at most."
         )
     if path.suffix not in _SUFFIXES:
         known = " or ".join(_SUFFIXES)

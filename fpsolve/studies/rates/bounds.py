@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -18,12 +19,16 @@ from fpsolve.studies.rates.poincare import poincare_constant, require_confining
 __all__ = [
     "HypocoerciveBound",
     "averaging_bound",
+    "checked_noise",
     "hypocoercive_bound",
     "large_noise_asymptote",
     "small_noise_asymptote",
 ]
 
 Array = NDArray[np.float64]
+
+# The fourth power still has digits to spare, as that of the largest noise of a model.
+_SMALLEST_NOISE = 1e-60
 
 
 @dataclass(frozen=True)
@@ -78,7 +83,7 @@ def hypocoercive_bound(
     ----------
     [DKMS13]_, theorem 1; [DMS15]_.
     """
-    noise = _positive_noise(noise)
+    noise = checked_noise("noise", noise)
     if not factor > 1:
         raise ValueError(
             f"`factor` must be above 1, got {factor:g}; no rate is proven without one."
@@ -127,7 +132,7 @@ def averaging_bound(potential: Potential, noise: float) -> float:
     ----------
     [KMW09]_, theorem 3.3.
     """
-    noise = _positive_noise(noise)
+    noise = checked_noise("noise", noise)
     if not (isinstance(potential, QuadraticPotential) and potential.isotropic):
         raise ValueError(
             "`potential` must be an isotropic QuadraticPotential for this bound, got "
@@ -164,10 +169,16 @@ def large_noise_asymptote(potential: Potential, noise: ArrayLike) -> Array:
     return np.asarray(np.where(np.abs(share) <= 0.5, rate, np.nan))
 
 
-def _positive_noise(noise: float) -> float:
-    return check_positive(
-        "noise", noise, "; without noise the density never forgets its start"
-    )
+def checked_noise(name: str, noise: Any) -> float:
+    """The noise as a float; ValueError unless its powers are numbers too."""
+    remedy = "; without noise the density never forgets its start"
+    checked = check_positive(name, noise, remedy)
+    if not checked >= _SMALLEST_NOISE:
+        raise ValueError(
+            f"`{name}` must be at least {_SMALLEST_NOISE:g}, got {checked:g}; with so "
+            "little noise nothing but the limit means anything, see EnergyProcess."
+        )
+    return checked
 
 
 def _unit_of(potential: Potential) -> tuple[float, Potential]:

@@ -19,6 +19,7 @@ from fpsolve.potentials import Potential, QuadraticPotential
 from fpsolve.spectral.spectrum import check_tolerance
 from fpsolve.studies.arguments import check_functions, names_of, series_of
 from fpsolve.studies.observables import Observable, default_observables
+from fpsolve.studies.rates.bounds import checked_noise
 from fpsolve.studies.rates.cases import PARTS, rate_case
 from fpsolve.studies.rates.dataset import rates_dataset
 from fpsolve.studies.rates.poincare import poincare_constant, require_confining
@@ -201,8 +202,7 @@ def _checked(potential: Potential, noises: Iterable[float]) -> Array:
     LayDownModel(potential, 1.0)
     require_confining(potential)
     poincare_constant(potential)
-    remedy = "; without noise the density never forgets its start"
-    listed = [check_positive("noises", noise, remedy) for noise in series_of(noises)]
+    listed = [checked_noise("noises", noise) for noise in series_of(noises)]
     if not listed:
         raise ValueError("`noises` must hold at least one noise, got none.")
     return np.unique(listed)

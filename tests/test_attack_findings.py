@@ -1,0 +1,99 @@
+"""What random combinations of the public API found, each as a law.
+
+The generator is `validation/reliability/attack.py`.
+"""
+
+import numpy as np
+import pytest
+from solutions import relaxing_solution
+
+import fpsolve as fp
+from fpsolve import diagnostics, initial, plotting, studies
+from fpsolve.curves import FixedBelt, MovingBelt, RotatingNozzle
+from fpsolve.studies.rates.bounds import averaging_bound, hypocoercive_bound
+
+GRID = fp.PhaseSpaceGrid(5.0, (9, 8, 8))
+CURVES = [FixedBelt(), MovingBelt(0.3), RotatingNozzle(0.1, 0.5, 2.0)]
+
+
+@pytest.mark.parametrize(
+    ("variance", "concentration"), [(1e-5, 1.0), (1.0, 1e12)], ids=["plane", "angle"]
+)
+def test_a_start_that_no_cell_sees_is_refused(variance, concentration):
+    """It had a mass of 0 and became NaN, with no more than a warning."""
+    with pytest.raises(ValueError, match=r"must leave mass on the cells, got .*refine"):
+        initial.gaussian(GRID, (0.7, 0.3), variance, 0.1, concentration)
+
+
+@pytest.mark.parametrize("curve", CURVES, ids=lambda curve: curve.kind)
+@pytest.mark.parametrize("s", ["x", None, 1j, np.nan, np.inf, [0.0, np.nan]], ids=repr)
+def test_a_curve_refuses_what_is_no_arclength(curve, s):
+    for question in (curve.position, curve.velocity):
+        with pytest.raises((TypeError, ValueError), match=r"`s` must (hold|be)"):
+            question(s)
+
+
+@pytest.mark.parametrize("curve", CURVES, ids=lambda curve: curve.kind)
+def test_a_displacement_is_between_two_numbers(curve):
+    with pytest.raises(TypeError, match="`s1` must be a real number, got 'x'"):
+        curve.displacement(0.0, "x")
+    with pytest.raises(ValueError, match="`s0` must be finite, got nan"):
+        curve.displacement(np.nan, 1.0)
+
+
+def test_a_drift_has_a_direction_that_is_a_number():
+    model = fp.LayDownModel(fp.QuadraticPotential(), 1.0)
+    with pytest.raises(TypeError, match="`alpha` must hold real numbers"):
+        model.drift(0.0, 0.0, FixedBelt())
+
+
+def test_a_marginal_is_that_of_a_density_on_the_grid():
+    with pytest.raises(fp.GridMismatchError, match=r"`p` must have the shape"):
+        diagnostics.marginal(np.ones((2, 3)), GRID)
+    with pytest.raises(ValueError, match=r"`p` must have the shape"):
+        diagnostics.marginal((np.nan, 0.0), GRID, "alpha")
+
+
+def test_a_frame_of_a_movie_ends():
+    """A GIF cannot say more than 65535 hundredths of a second."""
+    with pytest.raises(ValueError, match=r"`fps` must be at least 0.0015, got 1e-12"):
+        plotting.movie(relaxing_solution(), "film.gif", fps=1e-12)
+
+
+def test_the_figure_of_a_comparison_is_not_that_of_a_result():
+    with pytest.raises(TypeError, match="`comparison` must be a Comparison"):
+        plotting.plot_comparison(relaxing_solution())
+
+
+@pytest.mark.parametrize("noise", [1e-61, 1e-160, 1e-300, 5e-324])
+def test_rates_need_a_noise_whose_powers_are_numbers(noise):
+    """They ended in an OverflowError."""
+    with pytest.raises(ValueError, match=r"`noises` must be at least 1e-60, got"):
+        studies.rate_versus_noise(fp.QuadraticPotential(), [noise], workers=0)
+    for bound in (averaging_bound, hypocoercive_bound):
+        with pytest.raises(ValueError, match=r"`noise` must be at least 1e-60, got"):
+            bound(fp.QuadraticPotential(), noise)
+
+
+@pytest.mark.parametrize(
+    ("noise", "curve"),
+    [
+        (20.0, FixedBelt()),
+        (1e3, MovingBelt(-0.3)),
+        (0.7, RotatingNozzle(0.0, 0.6, 60.0)),
+    ],
+    ids=["A = 20", "A = 1000", "ω = 60"],
+)
+def test_estimates_cover_where_a_step_sees_neither_noise_nor_nozzle(noise, curve):
+    """A third of the change is the error for order 2; here the order is 1."""
+    model = fp.LayDownModel(fp.QuadraticPotential(), noise, curve)
+    grid = fp.PhaseSpaceGrid(6.0, (32, 32, 16))
+    p0 = initial.gaussian(grid, (0.5, 0.3), 0.6, 0.5, 1.0)
+    scheme, span, ds = fp.drift_kick(model, grid), (0.0, 0.5), 0.25
+    run = fp.solve(scheme, p0, span, ds, extrapolate=True)
+    exact = fp.solve(scheme, p0, span, ds / 16).final
+    error = diagnostics.l1_distance(run.final, exact, grid)
+    estimate = run.errors["density_l1"][0]
+    # A sixteenth of the step leaves an eighth of the estimate in `exact`.
+    assert error < 1.1 * estimate
+    assert error > estimate / 3

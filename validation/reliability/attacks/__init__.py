@@ -1,0 +1,1 @@
+"""Random combinations of arguments, and independent values to compare with."""
