@@ -21,6 +21,7 @@ __all__ = [
     "check_flag",
     "check_integer",
     "check_kind",
+    "check_noise",
     "check_non_negative",
     "check_one_of",
     "check_pair",
@@ -35,6 +36,9 @@ __all__ = [
 
 T = TypeVar("T")
 
+# The fourth power still has digits to spare; above A = 1e3 only the limit of large
+# noise tells anything, and likewise below 1e-3 that of little noise.
+_SMALLEST_NOISE, _LARGEST_NOISE = 1e-60, 1e60
 # What a message shows of a value; more would bury the message.
 _LONGEST = 80
 
@@ -84,6 +88,22 @@ def check_positive(name: str, value: Any, remedy: str = "") -> float:
             f"`{name}` must be positive and finite, got {number:g}{remedy}."
         )
     return number
+
+
+def check_noise(name: str, value: Any, remedy: str = "") -> float:
+    """Return a noise A > 0 as a float; ValueError unless A⁴ and A⁻⁴ are numbers."""
+    noise = check_positive(name, value, remedy)
+    if not noise <= _LARGEST_NOISE:
+        raise ValueError(
+            f"`{name}` must be at most {_LARGEST_NOISE:g}, got {noise:g}; its "
+            "square is the diffusivity of the angle."
+        )
+    if not noise >= _SMALLEST_NOISE:
+        raise ValueError(
+            f"`{name}` must be at least {_SMALLEST_NOISE:g}, got {noise:g}; its "
+            "square is the diffusivity of the angle, and 0 means none."
+        )
+    return noise
 
 
 def check_non_negative(name: str, value: Any, remedy: str = "") -> float:

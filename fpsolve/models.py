@@ -11,15 +11,17 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from fpsolve._arrays import check_numbers
-from fpsolve._checks import check_kind, check_non_negative, construct, shown
+from fpsolve._checks import (
+    check_kind,
+    check_noise,
+    check_non_negative,
+    construct,
+    shown,
+)
 from fpsolve.curves import Curve, FixedBelt, curve_from_dict
 from fpsolve.potentials import Potential, potential_from_dict
 
 __all__ = ["LayDownModel", "check_model"]
-
-# The fourth power still has digits to spare; above A = 1e3 only the limit of large
-# noise tells anything.
-_LARGEST_NOISE = 1e60
 
 
 @dataclass(frozen=True)
@@ -39,14 +41,14 @@ class LayDownModel:
     potential : Potential
         Buckling potential B.
     noise : float
-        Noise amplitude A >= 0.
+        Noise amplitude A: 0, or between 1e-60 and 1e60.
     curve : Curve, optional
         Reference curve γ; a fixed belt by default.
 
     Raises
     ------
     ValueError
-        If the noise is negative or not finite.
+        If the noise is negative, not finite, or so extreme that its powers are.
     TypeError
         If an argument is of another kind.
 
@@ -71,11 +73,8 @@ class LayDownModel:
                 "MovingBelt(speed) for a moving belt."
             )
         noise = check_non_negative("noise", self.noise)
-        if not noise <= _LARGEST_NOISE:
-            raise ValueError(
-                f"`noise` must be at most {_LARGEST_NOISE:g}, got {noise:g}; its "
-                "square is the diffusivity of the angle."
-            )
+        if noise:
+            noise = check_noise("noise", noise)
         object.__setattr__(self, "noise", noise)
 
     @property

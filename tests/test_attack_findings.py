@@ -65,14 +65,48 @@ def test_the_figure_of_a_comparison_is_not_that_of_a_result():
         plotting.plot_comparison(relaxing_solution())
 
 
-@pytest.mark.parametrize("noise", [1e-61, 1e-160, 1e-300, 5e-324])
-def test_rates_need_a_noise_whose_powers_are_numbers(noise):
-    """They ended in an OverflowError."""
-    with pytest.raises(ValueError, match=r"`noises` must be at least 1e-60, got"):
-        studies.rate_versus_noise(fp.QuadraticPotential(), [noise], workers=0)
-    for bound in (averaging_bound, hypocoercive_bound):
-        with pytest.raises(ValueError, match=r"`noise` must be at least 1e-60, got"):
-            bound(fp.QuadraticPotential(), noise)
+TOO_QUIET = [1e-61, 1e-160, 1e-300, 5e-324]
+
+
+@pytest.mark.parametrize("noise", TOO_QUIET)
+def test_a_noise_has_powers_that_are_numbers(noise):
+    """They ended in an OverflowError, a ZeroDivisionError, or a rate of 0."""
+    potential = fp.QuadraticPotential()
+    told = "`noise` must be at least 1e-60, got .*and 0 means none"
+    for make in (
+        fp.LayDownModel,
+        fp.EnergyProcess,
+        averaging_bound,
+        hypocoercive_bound,
+    ):
+        with pytest.raises(ValueError, match=told):
+            make(potential, noise)
+
+
+@pytest.mark.parametrize("noise", [*TOO_QUIET, 1e61])
+def test_so_has_every_noise_of_a_study(noise):
+    studied = (
+        lambda noises: studies.rate_versus_noise(fp.QuadraticPotential(), noises),
+        lambda noises: studies.small_noise_limit(fp.QuadraticPotential(), noises),
+        lambda noises: studies.large_noise_limit(fp.QuadraticPotential(), noises),
+        lambda noises: studies.small_noise_spectrum(fp.QuadraticPotential(), noises),
+        lambda noises: studies.ergodic_averages(
+            fp.QuadraticPotential(), noises, s_end=4.0, n_paths=40, seed=1
+        ),
+    )
+    for study in studied:
+        with pytest.raises(ValueError, match=r"`noises` must be at (least|most) 1e"):
+            study([noise])
+
+
+def test_the_quietest_and_the_loudest_model_still_have_limits():
+    """At the ends of what is allowed nothing overflows."""
+    for noise in (1e-60, 1e60):
+        limit = fp.HydrodynamicLimit(fp.LayDownModel(fp.QuadraticPotential(), noise))
+        assert limit.gap() == pytest.approx(noise**-2, rel=1e-12)
+        process = fp.EnergyProcess(fp.QuadraticPotential(), noise)
+        rate = process.eigenvalues(1, "odd")[0]
+        assert rate == pytest.approx(0.5 * noise**2, rel=1e-9)
 
 
 @pytest.mark.parametrize(

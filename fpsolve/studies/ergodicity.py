@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fpsolve._blas import one_blas_thread
-from fpsolve._checks import check_integer, check_kind, check_positive
+from fpsolve._checks import check_integer, check_kind, check_noise, check_positive
 from fpsolve.io.attributes import made_with
 from fpsolve.io.recipes import recipe
 from fpsolve.models import LayDownModel
@@ -186,7 +186,7 @@ def _check(
 
 
 def _amplitudes(noises: Iterable[float]) -> Array:
-    amplitudes = np.array([check_positive("noises", noise) for noise in noises])
+    amplitudes = np.array([check_noise("noises", noise) for noise in noises])
     if not amplitudes.size:
         raise ValueError("`noises` must hold at least one noise, got none.")
     return amplitudes

@@ -8,7 +8,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from fpsolve._checks import check_call, check_integer, check_positive, check_real
+from fpsolve._checks import check_call, check_integer, check_noise, check_real
 from fpsolve.potentials import Potential
 from fpsolve.reduced.energy.averages import OrbitAverages
 from fpsolve.reduced.energy.checks import check_energies
@@ -38,7 +38,7 @@ class Coefficients:
     """
 
     def __init__(self, potential: Potential, noise: float) -> None:
-        self.noise = check_positive(
+        self.noise = check_noise(
             "noise", noise, "; without noise the energy does not change"
         )
         self._averages = OrbitAverages(Well(potential))

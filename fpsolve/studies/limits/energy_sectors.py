@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fpsolve._checks import check_positive
+from fpsolve._checks import check_noise
 from fpsolve.errors import MemoryLimitError, ToleranceError
 from fpsolve.io.attributes import labels, made_with, to_json
 from fpsolve.io.recipes import recipe
@@ -71,7 +71,7 @@ def small_noise_spectrum(
     import xarray as xr
 
     process = EnergyProcess(potential, 1.0)
-    listed = [check_positive("noises", noise) for noise in series_of(noises)]
+    listed = [check_noise("noises", noise) for noise in series_of(noises)]
     if not listed:
         raise ValueError("`noises` must hold at least one noise, got none.")
     amplitudes = np.unique(listed)[::-1]

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve._checks import check_finite, check_positive
+from fpsolve._checks import check_finite, check_noise, check_positive
 from fpsolve.errors import RunInterrupted
 from fpsolve.io.attributes import to_json
 from fpsolve.io.recipes import recipe
@@ -225,7 +225,7 @@ def checked_noises(potential: Potential, noises: Iterable[float]) -> Array:
     # Says what is wrong with a potential that is none.
     LayDownModel(potential, 1.0)
     require_confining(potential)
-    listed = [check_positive("noises", noise) for noise in series_of(noises)]
+    listed = [check_noise("noises", noise) for noise in series_of(noises)]
     if not listed:
         raise ValueError("`noises` must hold at least one noise, got none.")
     return np.unique(listed)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve._checks import check_finite, check_integer, check_positive
+from fpsolve._checks import check_finite, check_integer, check_noise, check_positive
 from fpsolve.errors import RunInterrupted
 from fpsolve.io.recipes import recipe
 from fpsolve.paths import GaussianLaw
@@ -148,7 +148,7 @@ def small_noise_limit(
 def _checked_noises(potential: Potential, noises: Iterable[float]) -> Array:
     """The noises, descending: the limit is at the end."""
     EnergyProcess(potential, 1.0)
-    listed = [check_positive("noises", noise) for noise in series_of(noises)]
+    listed = [check_noise("noises", noise) for noise in series_of(noises)]
     if not listed:
         raise ValueError("`noises` must hold at least one noise, got none.")
     return np.unique(listed)[::-1]

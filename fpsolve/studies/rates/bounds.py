@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import brentq, minimize
 
-from fpsolve._checks import check_positive
+from fpsolve._checks import check_noise
 from fpsolve.potentials import LinearPotential, Potential, QuadraticPotential
 from fpsolve.studies.limits.gap_expansion import next_gap_term
 from fpsolve.studies.rates.poincare import poincare_constant, require_confining
@@ -26,9 +26,6 @@ __all__ = [
 ]
 
 Array = NDArray[np.float64]
-
-# The fourth power still has digits to spare, as that of the largest noise of a model.
-_SMALLEST_NOISE = 1e-60
 
 
 @dataclass(frozen=True)
@@ -170,15 +167,9 @@ def large_noise_asymptote(potential: Potential, noise: ArrayLike) -> Array:
 
 
 def checked_noise(name: str, noise: Any) -> float:
-    """The noise as a float; ValueError unless its powers are numbers too."""
+    """The noise as a float; ValueError unless it is positive."""
     remedy = "; without noise the density never forgets its start"
-    checked = check_positive(name, noise, remedy)
-    if not checked >= _SMALLEST_NOISE:
-        raise ValueError(
-            f"`{name}` must be at least {_SMALLEST_NOISE:g}, got {checked:g}; with so "
-            "little noise nothing but the limit means anything, see EnergyProcess."
-        )
-    return checked
+    return check_noise(name, noise, remedy)
 
 
 def _unit_of(potential: Potential) -> tuple[float, Potential]:
