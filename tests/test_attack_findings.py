@@ -110,6 +110,22 @@ def test_the_quietest_and_the_loudest_model_still_have_limits():
 
 
 @pytest.mark.parametrize(
+    ("potential", "noise"),
+    [
+        (fp.QuadraticPotential(), 9e-4),
+        (fp.QuadraticPotential(0.01, 0.01), 9e-3),
+        (fp.LinearPotential(), 1e-30),
+        (fp.PowerPotential(3.0), 1e59),
+    ],
+    ids=["quadratic", "narrow", "linear", "power"],
+)
+def test_a_spectrum_that_rounding_hides_is_refused(potential, noise):
+    """These searched for ever, or ended in "Factor is exactly singular"."""
+    with pytest.raises(ValueError, match=r"`noise` must be at (least|most) .* lost in"):
+        fp.spectral_gap(fp.LayDownModel(potential, noise))
+
+
+@pytest.mark.parametrize(
     ("noise", "curve"),
     [
         (20.0, FixedBelt()),

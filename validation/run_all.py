@@ -23,7 +23,6 @@ SCRIPTS = (
     "small_noise_limit.py",
     "reliability/kill_and_resume.py",
     "reliability/memory_of_saved_densities.py",
-    "reliability/attack.py",
     "performance/run.py",
     "performance/paths.py",
     "performance/reduced.py",

@@ -12,7 +12,11 @@ from fpsolve.spectral.hermite import HermiteDiscretisation
 from fpsolve.spectral.sectors import Discretisation
 from fpsolve.spectral.tensor import TensorDiscretisation
 
-__all__ = ["discretisation_for", "orbit_radius"]
+__all__ = ["check_resolved", "discretisation_for", "orbit_radius"]
+
+# A √R, R the radius of the circular orbit. Below it rates are lost in the rounding of
+# the frequencies, above it the other way round, and no basis that fits helps.
+QUIETEST, LOUDEST = 1e-3, 1e6
 
 
 def discretisation_for(model: LayDownModel) -> Discretisation:
@@ -68,6 +72,25 @@ def check(model: LayDownModel) -> None:
         raise ValueError(
             "`curve` must be a belt at rest or at constant speed, got "
             f"{model.curve!r}; under a moving nozzle there is no spectrum to speak of."
+        )
+
+
+def check_resolved(model: LayDownModel) -> None:
+    """Raise ValueError where rates and frequencies differ by more than rounding."""
+    radius = orbit_radius(model.potential)
+    scaled = model.noise * math.sqrt(radius)
+    if math.isfinite(radius) and not scaled >= QUIETEST:
+        raise ValueError(
+            f"`noise` must be at least {QUIETEST / math.sqrt(radius):.3g} for the "
+            f"spectrum of this potential, got {model.noise:g}; its rates are lost in "
+            "the rounding of the frequencies of the orbits. See EnergyProcess."
+        )
+    exact = isinstance(model.potential, QuadraticPotential) and model.curve.fixed
+    if math.isfinite(radius) and not (scaled <= LOUDEST or exact):
+        raise ValueError(
+            f"`noise` must be at most {LOUDEST / math.sqrt(radius):.3g} for the "
+            f"spectrum of this potential, got {model.noise:g}; its rates are lost in "
+            "the rounding of those of the angle. See HydrodynamicLimit."
         )
 
 

@@ -16,7 +16,7 @@ from fpsolve._checks import check_integer, check_real, shown
 from fpsolve.grids import PhaseSpaceGrid
 from fpsolve.models import LayDownModel
 from fpsolve.potentials import QuadraticPotential
-from fpsolve.spectral.bases import discretisation_for
+from fpsolve.spectral.bases import check_resolved, discretisation_for
 from fpsolve.spectral.refinement import Refinement, left_vector, with_residual
 from fpsolve.spectral.sectors import Discretisation, Sector, Truncation
 from fpsolve.spectral.survey import Mode, Scale
@@ -177,7 +177,8 @@ def spectrum(
     Raises
     ------
     ValueError
-        If the model has no gap or there is no basis for it.
+        If the model has no gap, there is no basis for it, or its noise is so small or
+        large that rounding hides the rates.
     MemoryLimitError
         If not even the smallest basis fits.
     ToleranceError
@@ -190,6 +191,7 @@ def spectrum(
     n = check_integer("n_eigenvalues", n_eigenvalues, 1, MOST)
     tolerance = check_tolerance(tolerance)
     discretisation = discretisation_for(model)
+    check_resolved(model)
     essential = essential_of(model)
     refinement = Refinement(
         discretisation,
