@@ -18,8 +18,8 @@ from fpsolve._checks import (
     construct,
     shown,
 )
-from fpsolve.curves import Curve, FixedBelt, curve_from_dict
-from fpsolve.potentials import Potential, potential_from_dict
+from fpsolve.curves import Curve, FixedBelt, curve_from_dict, curve_to_dict
+from fpsolve.potentials import Potential, potential_from_dict, potential_to_dict
 
 __all__ = ["LayDownModel", "check_model"]
 
@@ -149,11 +149,14 @@ class LayDownModel:
         return f"{terms}, {', '.join(unknowns)}"
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the model as a JSON-able dictionary."""
+        """Return the model as a JSON-able dictionary.
+
+        Of a user's own potential and curve it also says what they compute, by a digest.
+        """
         return {
-            "potential": self.potential.to_dict(),
+            "potential": potential_to_dict(self.potential),
             "noise": self.noise,
-            "curve": self.curve.to_dict(),
+            "curve": curve_to_dict(self.curve),
         }
 
     @classmethod
@@ -163,7 +166,7 @@ class LayDownModel:
         Raises
         ------
         ValueError
-            If a kind or a parameter is unknown, or the potential is made of functions.
+            If a kind or a parameter is unknown, or potential or curve are a user's own.
         """
         readers = {"potential": potential_from_dict, "curve": curve_from_dict}
         parameters = {

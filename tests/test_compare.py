@@ -124,6 +124,18 @@ def test_parameters_that_differ_are_named_with_both_values(solution):
     }
 
 
+def test_two_potentials_of_one_name_are_parameters_that_differ(solution):
+    def closure(k):
+        return fp.IsotropicPotential(lambda r: k * r**2 / 2, lambda r: k * r)
+
+    first, again, other = (
+        replace(solution, model=fp.LayDownModel(closure(k), 1.0)) for k in (1, 1, 4)
+    )
+    assert not fp.compare(first, again).parameters
+    (named,) = fp.compare(first, other).parameters
+    assert named.startswith("model.potential.sampled: ")
+
+
 def test_versions_that_differ_are_named_with_both_values(solution):
     versions = {**PROVENANCE["versions"], "numpy": "9.9"}
     other = replace(solution, provenance={**PROVENANCE, "versions": versions})

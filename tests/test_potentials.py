@@ -433,3 +433,12 @@ def test_unknown_kinds_and_parameters_are_named_with_the_known_ones():
         potential_from_dict({"kind": "quadratic", "sigma": 1.0})
     with pytest.raises(ValueError, match="missing a required argument: 'exponent'"):
         potential_from_dict({"kind": "power"})
+
+
+@pytest.mark.parametrize("parent", [QuadraticPotential, LinearPotential])
+def test_closed_forms_are_not_inherited_by_other_values(parent):
+    # Z, spectra and limits of the parent would be used with them.
+    with pytest.raises(TypeError, match="`Stiff` must be derived from Potential t"):
+        type("Stiff", (parent,), {"gradient": lambda self, xi1, xi2: (xi1, xi2)})
+    named = type("Named", (parent,), {"formula": "B"})
+    assert named().partition_function == parent().partition_function

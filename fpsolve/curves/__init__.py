@@ -2,7 +2,7 @@
 
 from fpsolve.curves.belts import FixedBelt, MovingBelt
 from fpsolve.curves.curve import Curve
-from fpsolve.curves.dictionaries import curve_from_dict
+from fpsolve.curves.dictionaries import curve_from_dict, curve_to_dict
 from fpsolve.curves.nozzles import EllipticNozzle, OscillatingNozzle, RotatingNozzle
 from fpsolve.curves.table import TabulatedCurve
 
@@ -15,4 +15,5 @@ __all__ = [
     "RotatingNozzle",
     "TabulatedCurve",
     "curve_from_dict",
+    "curve_to_dict",
 ]

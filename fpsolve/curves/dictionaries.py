@@ -6,12 +6,14 @@ from collections.abc import Mapping
 from typing import Any
 
 from fpsolve._checks import construct
+from fpsolve._digests import SAMPLED, plain
 from fpsolve.curves.belts import FixedBelt, MovingBelt
 from fpsolve.curves.curve import Curve
 from fpsolve.curves.nozzles import EllipticNozzle, OscillatingNozzle, RotatingNozzle
+from fpsolve.curves.samples import digest_of_curve
 from fpsolve.curves.table import TabulatedCurve
 
-__all__ = ["KINDS", "curve_from_dict"]
+__all__ = ["KINDS", "curve_from_dict", "curve_to_dict"]
 
 KINDS: dict[str, type[Curve]] = {
     curve.kind: curve
@@ -26,6 +28,24 @@ KINDS: dict[str, type[Curve]] = {
 }
 
 
+def curve_to_dict(curve: Curve) -> dict[str, Any]:
+    """Return a description that two curves share only if they are the same.
+
+    That of fpsolve's own curves is what their `to_dict` says, which `curve_from_dict`
+    reads. To that of a user's own class, whatever it says, a digest of positions and
+    velocities is added (see `fpsolve.curves.samples`), and `curve_from_dict` refuses
+    it.
+    """
+    if type(curve) in KINDS.values():
+        return curve.to_dict()
+    try:
+        description = plain(curve.to_dict())
+    # It is no dataclass.
+    except TypeError:
+        description = plain({"kind": curve.kind, "description": repr(curve)})
+    return {**description, SAMPLED: digest_of_curve(curve)}
+
+
 def curve_from_dict(description: Mapping[str, Any]) -> Curve:
     """Return the curve that its `to_dict` described.
 
@@ -37,10 +57,16 @@ def curve_from_dict(description: Mapping[str, Any]) -> Curve:
     Raises
     ------
     ValueError
-        If the kind is unknown, or a parameter does not exist or is missing.
+        If the kind is unknown, or a parameter does not exist or is missing; or if it
+        was a class of a user's own, even one that inherits the kind of one of fpsolve.
     """
     parameters = dict(description)
     kind = parameters.pop("kind", None)
+    if SAMPLED in parameters:
+        raise ValueError(
+            f"`curve` must not be of your own code to be read back, got {kind!r}; "
+            "build it again in Python."
+        )
     if kind not in KINDS:
         known = ", ".join(repr(name) for name in KINDS)
         raise ValueError(f"`kind` of a curve must be one of {known}, got {kind!r}.")

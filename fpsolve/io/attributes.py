@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from fpsolve._digests import SAMPLED
 from fpsolve.curves.dictionaries import KINDS as CURVE_KINDS
 from fpsolve.environment import environment
 from fpsolve.models import LayDownModel
@@ -118,7 +119,7 @@ def read_model(
 
 
 def _of_a_user(description: Mapping[str, Any]) -> bool:
-    """Whether the potential or the curve is of no kind that fpsolve has."""
+    """Whether the potential or the curve is of a class that fpsolve has not."""
     known: dict[str, Collection[str]] = {
         "potential": POTENTIAL_KINDS,
         "curve": CURVE_KINDS,
@@ -127,7 +128,7 @@ def _of_a_user(description: Mapping[str, Any]) -> bool:
     return any(
         isinstance(part, Mapping)
         and isinstance(part.get("kind"), str)
-        and part["kind"] not in known[name]
+        and (part["kind"] not in known[name] or SAMPLED in part)
         for name, part in parts.items()
     )
 

@@ -16,7 +16,7 @@ from fpsolve.io.attributes import (
     to_json,
 )
 from fpsolve.io.recipes import recipe
-from fpsolve.potentials import potential_from_dict
+from fpsolve.potentials import potential_from_dict, potential_to_dict
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -192,7 +192,7 @@ def tables_dataset(
 def _attributes(process: EnergyProcess) -> dict[str, Any]:
     return {
         "equation": "dG = −(A²/2) G ds + σ(G) dW, σ² = A² J(G)/S(G)",
-        "potential": to_json(process.potential.to_dict()),
+        "potential": to_json(potential_to_dict(process.potential)),
         "formula": process.potential.formula,
         "noise": process.noise,
         "radius": process.radius,

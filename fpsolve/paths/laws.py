@@ -13,7 +13,7 @@ from fpsolve.grids import PhaseSpaceGrid, check_grid
 from fpsolve.initial import checked_covariance
 from fpsolve.paths.gibbs import GibbsSampler
 from fpsolve.paths.interpolated import InterpolatedDensity
-from fpsolve.potentials import Potential
+from fpsolve.potentials import Potential, potential_to_dict
 
 __all__ = ["DensityLaw", "EquilibriumLaw", "GaussianLaw", "Law", "PointLaw"]
 
@@ -165,7 +165,7 @@ class EquilibriumLaw:
 
     def to_dict(self) -> dict[str, Any]:
         """Return `kind` and the potential as a JSON-able dictionary."""
-        return {"kind": "equilibrium", "potential": self.potential.to_dict()}
+        return {"kind": "equilibrium", "potential": potential_to_dict(self.potential)}
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,6 +1,6 @@
 """Buckling potentials B(ξ): what pulls the fibre back to the reference curve."""
 
-from fpsolve.potentials.dictionaries import potential_from_dict
+from fpsolve.potentials.dictionaries import potential_from_dict, potential_to_dict
 from fpsolve.potentials.free import FreePotential
 from fpsolve.potentials.linear import LinearPotential
 from fpsolve.potentials.potential import Potential
@@ -17,4 +17,5 @@ __all__ = [
     "PowerPotential",
     "QuadraticPotential",
     "potential_from_dict",
+    "potential_to_dict",
 ]

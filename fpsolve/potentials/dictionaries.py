@@ -6,14 +6,16 @@ from collections.abc import Mapping
 from typing import Any
 
 from fpsolve._checks import construct
+from fpsolve._digests import SAMPLED, plain
 from fpsolve.potentials.free import FreePotential
 from fpsolve.potentials.linear import LinearPotential
 from fpsolve.potentials.potential import Potential
 from fpsolve.potentials.power import PowerPotential
 from fpsolve.potentials.quadratic import QuadraticPotential
+from fpsolve.potentials.samples import digest_of_potential
 from fpsolve.potentials.user import CallablePotential
 
-__all__ = ["KINDS", "potential_from_dict"]
+__all__ = ["KINDS", "potential_from_dict", "potential_to_dict"]
 
 KINDS: dict[str, type[Potential]] = {
     potential.kind: potential
@@ -24,6 +26,24 @@ KINDS: dict[str, type[Potential]] = {
         FreePotential,
     )
 }
+
+
+def potential_to_dict(potential: Potential) -> dict[str, Any]:
+    """Return a description that two potentials share only if they compute the same.
+
+    That of fpsolve's own potentials is what their `to_dict` says, which
+    `potential_from_dict` reads. To that of a user's own class, and of a user's
+    functions, whatever it says, a digest of values and gradients is added (see
+    `fpsolve.potentials.samples`), and `potential_from_dict` refuses it.
+    """
+    if type(potential) in KINDS.values():
+        return potential.to_dict()
+    try:
+        description = plain(potential.to_dict())
+    # It is no dataclass.
+    except TypeError:
+        description = plain({"kind": potential.kind, "description": repr(potential)})
+    return {**description, SAMPLED: digest_of_potential(potential)}
 
 
 def potential_from_dict(description: Mapping[str, Any]) -> Potential:
@@ -38,7 +58,8 @@ def potential_from_dict(description: Mapping[str, Any]) -> Potential:
     ------
     ValueError
         If the kind is unknown or made of functions, which no dictionary can hold, or
-        if a parameter does not exist or is missing.
+        if a parameter does not exist or is missing; or if it was a class of a user's
+        own, even one that inherits the kind of one of fpsolve.
     """
     parameters = dict(description)
     kind = parameters.pop("kind", None)
@@ -46,6 +67,11 @@ def potential_from_dict(description: Mapping[str, Any]) -> Potential:
         raise ValueError(
             f"`potential` must not be made of functions to be read back, got "
             f"{parameters.get('description', 'a callable')}; build it again in Python."
+        )
+    if SAMPLED in parameters:
+        raise ValueError(
+            f"`potential` must not be of your own code to be read back, got {kind!r}; "
+            "build it again in Python."
         )
     if kind not in KINDS:
         known = ", ".join(repr(name) for name in KINDS)

@@ -15,6 +15,15 @@ from fpsolve.potentials.partition import partition_function_of
 
 __all__ = ["Potential", "RadialPotential"]
 
+# What must agree with the closed forms of a class: of Z, spectra, samples and limits.
+_COMPUTED = ("value", "gradient", "radial_value", "radial_derivative")
+
+
+def _has_closed_forms(kind: type) -> bool:
+    """Whether a class is one of fpsolve that knows its Z."""
+    own = kind.__module__.startswith("fpsolve.") and kind.__name__ != "Potential"
+    return own and "partition_function" in vars(kind)
+
 
 class Potential(ABC):
     """A buckling potential B(ξ) on the plane.
@@ -25,7 +34,8 @@ class Potential(ABC):
 
     A new potential is a frozen dataclass that defines `value`, `gradient`, `formula`
     and `latex`, and `kind` if it is to be stored; `partition_function` then comes from
-    quadrature.
+    quadrature. A class that is derived from one with closed forms, such as
+    `QuadraticPotential`, and has other values raises TypeError when it is defined.
 
     References
     ----------
@@ -33,6 +43,18 @@ class Potential(ABC):
     """
 
     kind: ClassVar[str] = "custom"
+
+    def __init_subclass__(cls, **options: Any) -> None:
+        """Refuse other values under the closed forms of a class of fpsolve."""
+        super().__init_subclass__(**options)
+        own = [name for name in _COMPUTED if name in vars(cls)]
+        parent = next((one for one in cls.__mro__[1:] if _has_closed_forms(one)), None)
+        if own and parent is not None:
+            raise TypeError(
+                f"`{cls.__name__}` must be derived from Potential to have its own "
+                f"`{own[0]}`, got {parent.__name__} as its parent, whose closed forms "
+                "would be used with it."
+            )
 
     @abstractmethod
     def value(self, xi1: ArrayLike, xi2: ArrayLike) -> NDArray[np.float64]:

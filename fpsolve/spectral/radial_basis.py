@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
@@ -9,6 +10,8 @@ from numpy.polynomial import Chebyshev
 from numpy.typing import ArrayLike, NDArray
 
 from fpsolve.potentials import Potential, PowerPotential, QuadraticPotential
+from fpsolve.potentials.dictionaries import KINDS
+from fpsolve.potentials.samples import digest_of_profile
 from fpsolve.spectral.essential import asymptotic_slope
 from fpsolve.spectral.orthogonal import (
     OrthonormalFamily,
@@ -164,18 +167,36 @@ class RadialBasis:
         return self._products[key]
 
 
-@lru_cache(maxsize=6)
 def radial_basis(potential: Potential, degree: int) -> RadialBasis:
     """The basis of a potential, shared by all noises and truncations.
+
+    A user's potential is asked again whether it still computes the same: its functions
+    may be the same objects, and what they refer to may have changed.
 
     Parameters
     ----------
     potential : Potential
-        Isotropic and hashable.
+        Isotropic.
     degree : int
         Degree that it must offer.
     """
     rounded = STRIDE * -(-max(degree, 1) // STRIDE)
-    if rounded != degree:
-        return radial_basis(potential, rounded)
-    return RadialBasis(potential, degree)
+    own = type(potential) not in KINDS.values()
+    computes = digest_of_profile(potential) if own else ""
+    return _shared_basis(_Key(potential, computes), rounded)
+
+
+@dataclass(frozen=True)
+class _Key:
+    """A potential, and what it computes; hashable whatever the potential is."""
+
+    potential: Potential
+    computes: str
+
+    def __hash__(self) -> int:
+        return hash((type(self.potential), self.computes or self.potential))
+
+
+@lru_cache(maxsize=6)
+def _shared_basis(key: _Key, degree: int) -> RadialBasis:
+    return RadialBasis(key.potential, degree)

@@ -17,7 +17,7 @@ from fpsolve.io.attributes import made_with
 from fpsolve.io.recipes import recipe
 from fpsolve.models import LayDownModel
 from fpsolve.paths import EquilibriumLaw, sample_paths
-from fpsolve.potentials import Potential
+from fpsolve.potentials import Potential, potential_to_dict
 from fpsolve.progress import ProgressCallback, reporting
 from fpsolve.studies.arguments import check_functions, series_of
 from fpsolve.studies.asymptotic_variance import SETTLED
@@ -161,7 +161,7 @@ def ergodic_averages(
     ).assign_attrs(
         title="Averages along paths started from the equilibrium",
         equation="(12) of Klar, Marheineke and Wegener (2009)",
-        potential=json.dumps(potential.to_dict()),
+        potential=json.dumps(potential_to_dict(potential)),
         formula=potential.formula,
         n_paths=n_paths,
         seed=json.dumps([sequence.entropy, *sequence.spawn_key]),

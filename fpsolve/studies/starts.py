@@ -31,19 +31,19 @@ def density_and_law(p0: Any, grid: PhaseSpaceGrid) -> tuple[NDArray[np.float64],
     """
     from fpsolve.paths import DensityLaw, EquilibriumLaw, GaussianLaw, PointLaw
 
-    if isinstance(p0, PointLaw):
+    if type(p0) is PointLaw:
         raise ValueError(
             "`p0` must have a density, got a PointLaw; a GaussianLaw with a variance "
             "of a few cells is what a grid can hold."
         )
-    if isinstance(p0, GaussianLaw):
+    if type(p0) is GaussianLaw:
         density = initial.gaussian(
             grid, p0.mean, p0.variance, p0.angle, p0.concentration
         )
         return density, p0
-    if isinstance(p0, EquilibriumLaw):
+    if type(p0) is EquilibriumLaw:
         return initial.equilibrium(grid, p0.potential), p0
-    if isinstance(p0, DensityLaw):
+    if type(p0) is DensityLaw:
         return _checked(p0.p, grid), p0
     if hasattr(p0, "sample"):
         raise TypeError(

@@ -14,7 +14,7 @@ from fpsolve.errors import MemoryLimitError, ToleranceError
 from fpsolve.io.attributes import labels, made_with, to_json
 from fpsolve.io.recipes import recipe
 from fpsolve.models import LayDownModel
-from fpsolve.potentials import Potential
+from fpsolve.potentials import Potential, potential_to_dict
 from fpsolve.reduced.energy import EnergyProcess
 from fpsolve.spectral.bases import discretisation_for
 from fpsolve.spectral.sectors import Sector
@@ -98,7 +98,7 @@ def small_noise_spectrum(
     }
     attributes = {
         "title": "Spectrum in the limit of little noise",
-        "potential": to_json(potential.to_dict()),
+        "potential": to_json(potential_to_dict(potential)),
         "formula": potential.formula,
         "tolerance": tolerance,
         **made_with(),

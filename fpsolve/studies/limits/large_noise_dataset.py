@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fpsolve.io.attributes import labels, made_with, to_json
-from fpsolve.potentials import Potential, QuadraticPotential
+from fpsolve.potentials import Potential, QuadraticPotential, potential_to_dict
 from fpsolve.studies.limits.orders import fitted_order, observed_orders
 from fpsolve.studies.limits.quantities import Quantity, quantities_of
 from fpsolve.studies.rates.sweep import Case
@@ -49,7 +49,7 @@ def large_noise_dataset(
         },
         {
             "title": "Distance to the limit of large noise",
-            "potential": to_json(potential.to_dict()),
+            "potential": to_json(potential_to_dict(potential)),
             "formula": potential.formula,
             **about,
             **made_with(),

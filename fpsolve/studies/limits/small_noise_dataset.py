@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fpsolve.io.attributes import labels, made_with, to_json
-from fpsolve.potentials import Potential
+from fpsolve.potentials import Potential, potential_to_dict
 from fpsolve.studies.limits.energy_law import N_FUNCTIONS
 from fpsolve.studies.limits.orders import observed_orders
 from fpsolve.studies.rates.sweep import Case
@@ -99,7 +99,7 @@ def _attributes(potential: Potential, options: Mapping[str, Any]) -> dict[str, A
     described = {**options, "law": options["law"].to_dict()}
     return {
         "title": "Law of G: full equation against averaged equation",
-        "potential": to_json(potential.to_dict()),
+        "potential": to_json(potential_to_dict(potential)),
         "formula": potential.formula,
         "expected_order": 1.0,
         "options": to_json(described),

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from scipy.optimize import nnls
 
 from fpsolve.io.attributes import labels, made_with, to_json
-from fpsolve.potentials import Potential
+from fpsolve.potentials import Potential, potential_to_dict
 from fpsolve.studies.rates.bounds import (
     averaging_bound,
     hypocoercive_bound,
@@ -125,7 +125,7 @@ def rates_dataset(
         {
             "title": "Rate of convergence against noise",
             "equation": "(9) of Klar, Marheineke and Wegener (2009), fixed belt",
-            "potential": to_json(potential.to_dict()),
+            "potential": to_json(potential_to_dict(potential)),
             "formula": potential.formula,
             "p0": to_json(about["p0"].to_dict()),
             "quick": int(about["quick"]),
