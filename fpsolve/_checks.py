@@ -45,7 +45,11 @@ _LONGEST = 80
 
 def shown(value: Any) -> str:
     """Return the repr of a value on one line, or its kind where that is long."""
-    text = " ".join(repr(value).split())
+    # Whoever has written a class may raise in its repr, and a deep list does too.
+    try:
+        text = " ".join(repr(value).split())
+    except Exception:
+        text = f"an object of {type(value).__name__}"
     if len(text) <= _LONGEST:
         return text
     kind, shape = type(value).__name__, getattr(value, "shape", None)

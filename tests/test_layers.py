@@ -6,11 +6,11 @@ from pathlib import Path
 PACKAGE = Path(__file__).parents[1] / "fpsolve"
 FLOORS = {
     "errors": 0, "_kernels": 0, "_arrays": 0, "_checks": 0, "_blas": 0, "_threads": 0,
-    "environment": 0, "_compilation": 0,
+    "environment": 0, "_compilation": 0, "_digests": 0,
     "potentials": 1, "curves": 1, "models": 1,
     "cells": 2, "grids": 2, "planes": 2, "initial": 2, "diagnostics": 2,
     "functionals": 2, "process": 2, "decay": 2,
-    "densities": 2, "interrupts": 2,
+    "densities": 2, "interrupts": 2, "identity": 2,
     "schedule": 2, "memory": 2, "progress": 2, "provenance": 2,
     "paths": 2, "spectral": 2, "reduced": 2,
     "schemes": 3,

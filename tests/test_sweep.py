@@ -170,13 +170,113 @@ def test_different_cases_have_different_files(tmp_path):
     assert store.path({"f": square}) != store.path({"f": warns})
 
 
-def test_what_has_no_name_of_its_own_cannot_be_kept(tmp_path):
-    with pytest.raises(ValueError, match="`function` must be defined at the top of"):
-        sweep(lambda x: {"x": x}, CASES, workers=0, directory=tmp_path)
-    nameless = IsotropicPotential(lambda r: r, lambda r: np.ones_like(r))
-    for argument in (nameless, lambda x: x):
-        with pytest.raises(ValueError, match="`cases` must be told apart by their val"):
-            sweep(square, [{"x": argument}], workers=0, directory=tmp_path)
+def test_functions_without_a_name_are_kept_by_what_they_do(tmp_path):
+    def times(k):
+        return lambda x: {"x": k * x}
+
+    for k in (2, 3):
+        for resumed in (False, True):
+            found = sweep(times(k), CASES, workers=0, directory=tmp_path)
+            assert [case.values["x"].item() for case in found] == [k, 2 * k, 3 * k]
+            assert all(case.resumed is resumed for case in found)
+
+
+def test_what_has_neither_code_nor_data_cannot_be_kept_without_a_key(tmp_path):
+    store = tmp_path / "store"
+    with (tmp_path / "open").open("w") as file:
+
+        def writes(x):
+            return {"x": x + file.write("")}
+
+        with pytest.raises(ValueError, match="`cases` must be told apart by code and"):
+            sweep(square, [{"x": file}], workers=0, directory=store)
+        with pytest.raises(ValueError, match="`function` must be told from others by "):
+            sweep(writes, CASES, workers=0, directory=store)
+        first, again, other = (
+            sweep(writes, CASES, workers=0, directory=store, key=key)[0].resumed
+            for key in ("one", "one", "two")
+        )
+    assert (first, again, other) == (False, True, False)
+    with pytest.raises(TypeError, match="`key` must be a str"):
+        sweep(square, CASES, workers=0, directory=store, key=1)
+
+
+def test_a_case_is_kept_as_what_it_was_before_it_ran(tmp_path):
+    def takes(x):
+        return {"x": x.pop()}
+
+    for resumed in (False, True):
+        found = sweep(takes, [{"x": [1, 2]}], workers=0, directory=tmp_path)
+        assert found[0].values["x"] == 2
+        assert found[0].resumed is resumed
+
+
+class OtherCode(ThreadPoolExecutor):
+    """A process that imported a module before it was edited."""
+
+    def submit(self, function, *arguments):
+        *others, code = arguments
+        return super().submit(function, *others, "old" + code)
+
+
+def test_a_worker_with_other_code_is_not_believed():
+    with OtherCode(1) as client:
+        found = sweep(square, CASES, client=client)
+    assert {case.status for case in found} == {"failed"}
+    assert "other code in the process where it was to run" in found[0].message
+
+
+def spring(k):
+    """k r²/2, of functions that have the same names for every k."""
+    return IsotropicPotential(lambda r: k * r**2 / 2, lambda r: k * r)
+
+
+class Spring:
+    """The same as bound methods."""
+
+    def __init__(self, k):
+        self.k = k
+
+    def value(self, r):
+        return self.k * r**2 / 2
+
+    def derivative(self, r):
+        return self.k * r
+
+
+def test_a_stiffer_spring_is_not_given_the_gap_of_a_softer_one(tmp_path):
+    def gap(potential):
+        case = {**GAPS[1], "potential": potential}
+        (found,) = sweep(rate_case, [case], workers=0, directory=tmp_path)
+        return found.values["gap"]
+
+    for k in (1.0, 4.0):
+        # k r²/2 = r²/2σ² with σ = 1/√k.
+        exact = gap(QuadraticPotential(k**-0.5, k**-0.5))
+        for potential in (
+            spring(k), IsotropicPotential(Spring(k).value, Spring(k).derivative),
+        ):  # fmt: skip
+            # To the tolerance that was asked for, on either side.
+            np.testing.assert_allclose(gap(potential), exact, rtol=2e-6)
+
+
+def test_a_basis_is_not_kept_for_functions_that_return_something_else():
+    # The functions, and so the potentials, are equal; what they read is not.
+    stiffness = [1.0]
+
+    def value(r):
+        return stiffness[0] * r**2 / 2
+
+    def derivative(r):
+        return stiffness[0] * r
+
+    def gap(noise):
+        case = {**GAPS[0], "potential": IsotropicPotential(value, derivative)}
+        return rate_case(**{**case, "noise": noise})["gap"]
+
+    soft = gap(1.0)
+    stiffness[0] = 4.0
+    np.testing.assert_allclose(gap(np.sqrt(2)), 2 * soft, rtol=2e-6)
 
 
 def test_bad_arguments_are_refused():

@@ -9,10 +9,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fpsolve._checks import construct
+from fpsolve._digests import SAMPLED, digest_of, plain
 from fpsolve.grids import PhaseSpaceGrid
 from fpsolve.io.attributes import labels
 from fpsolve.paths import DensityLaw, EquilibriumLaw, GaussianLaw, PointLaw
-from fpsolve.paths.ensemble import GivenStart
+from fpsolve.paths.ensemble import START_BLOCK, GivenStart
+from fpsolve.paths.randomness import start_generator
 from fpsolve.potentials import potential_from_dict
 
 if TYPE_CHECKING:
@@ -36,11 +38,24 @@ _KNOWN = (*FORMULAS, DensityLaw, GivenStart)
 
 def describe_law(law: Any, provenance: Mapping[str, Any]) -> dict[str, Any]:
     """Return a law without its arrays as a JSON-able dictionary."""
-    if isinstance(law, _KNOWN):
-        return law.to_dict()
+    # Of a class that is derived from one of these it would not be all.
+    if type(law) in _KNOWN:
+        known: dict[str, Any] = law.to_dict()
+        return known
     if law is None and _UNREADABLE in provenance:
         return dict(provenance[_UNREADABLE])
-    return {"kind": "custom", "description": repr(law)}
+    own = {"description": plain(repr(law)), SAMPLED: _digest_of_draws(law)}
+    return {"kind": "custom", **own}
+
+
+def _digest_of_draws(law: Any) -> str | None:
+    """What a law of unknown code draws from a generator that is always the same."""
+    # A user's law raises whatever it likes.
+    try:
+        xi, alpha = law.sample(start_generator(0, 0), START_BLOCK)
+        return digest_of(np.column_stack([xi, alpha]))
+    except Exception:
+        return None
 
 
 def law_variables(law: Any) -> dict[str, Any]:

@@ -9,11 +9,12 @@ from typing import Any
 import numpy as np
 
 from fpsolve.grids import PhaseSpaceGrid
+from fpsolve.identity import digest_or_none
 from fpsolve.io.attributes import to_json
 from fpsolve.io.laws import FORMULAS, law_from_formula
 from fpsolve.models import LayDownModel
 from fpsolve.planes import PlaneGrid
-from fpsolve.potentials import Potential, potential_from_dict
+from fpsolve.potentials import Potential, potential_from_dict, potential_to_dict
 
 __all__ = ["RECIPE", "UserCodeError", "read_recipe", "recipe"]
 
@@ -21,7 +22,8 @@ __all__ = ["RECIPE", "UserCodeError", "read_recipe", "recipe"]
 RECIPE = "repeat"
 # An object is a dictionary with one key, its kind; JSON has no other way to say it.
 _MARK = "$"
-_USER_CODE = f"{_MARK}user_code"
+# Beside the name of a user's code stands what it is, for a comparison to see.
+_USER_CODE, _IDENTITY = f"{_MARK}user_code", "identity"
 _READERS: dict[str, Callable[[Any], Any]] = {
     f"{_MARK}potential": potential_from_dict,
     f"{_MARK}model": LayDownModel.from_dict,
@@ -84,13 +86,13 @@ def read_recipe(text: str, given: Mapping[str, Any]) -> tuple[str, dict[str, Any
 def _described(value: Any) -> Any:
     """Return the value as JSON holds it."""
     if isinstance(value, Potential):
-        return {f"{_MARK}potential": value.to_dict()}
+        return {f"{_MARK}potential": potential_to_dict(value)}
     if isinstance(value, LayDownModel):
         return {f"{_MARK}model": value.to_dict()}
     if isinstance(value, PhaseSpaceGrid | PlaneGrid):
         kind = "plane" if isinstance(value, PlaneGrid) else "grid"
         return {f"{_MARK}{kind}": value.to_dict()}
-    if isinstance(value, FORMULAS):
+    if type(value) in FORMULAS:
         return {f"{_MARK}law": value.to_dict()}
     if isinstance(value, np.random.SeedSequence):
         return {f"{_MARK}seed": {"entropy": value.entropy,
@@ -103,7 +105,8 @@ def _described(value: Any) -> Any:
         return value.tolist()
     if value is None or isinstance(value, bool | int | float | str):
         return value
-    return {_USER_CODE: getattr(value, "__qualname__", type(value).__qualname__)}
+    name = getattr(value, "__qualname__", type(value).__qualname__)
+    return {_USER_CODE: name, _IDENTITY: digest_or_none(value)}
 
 
 def _read(argument: str, value: Any) -> Any:

@@ -14,8 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fpsolve._blas import one_blas_thread
-from fpsolve._checks import check_call, shown
+from fpsolve._checks import check_call, check_kind, shown
 from fpsolve.errors import RunInterrupted
+from fpsolve.identity import digest_or_none
 from fpsolve.studies.rates.executors import executor_for, finished_tasks
 from fpsolve.studies.rates.store import CaseStore
 
@@ -61,6 +62,7 @@ def sweep(
     client: Any = None,
     workers: int | None = None,
     directory: str | Path | None = None,
+    key: str | None = None,
     progress: bool | SweepProgress = False,
 ) -> list[Case]:
     """Call a function with every case as keywords; results in the order of the cases.
@@ -76,8 +78,7 @@ def sweep(
         Defined at the top of a module, so that other processes find it. Returns a
         mapping of names to numbers, strings or arrays.
     cases : iterable of mapping
-        Keyword arguments of the function; of numbers, strings, lists of these, and
-        objects with `to_dict`, such as potentials.
+        Keyword arguments of the function.
     client : dask.distributed.Client, str or concurrent.futures.Executor, optional
         Where to run, or the address of a dask scheduler.
     workers : int, optional
@@ -85,7 +86,13 @@ def sweep(
         0 all cases run in this process, one after the other.
     directory : str or Path, optional
         Folder that keeps every finished case in a small file, written at once and
-        whole. Cases found there are not computed again; failed ones are.
+        whole. Cases found there are not computed again; failed ones are, and so are
+        all if the function was edited, or one that it calls, or what it refers to.
+        What is not seen is data that code reads from elsewhere, such as files.
+    key : str, optional
+        Name of what the function computes, in place of its code, if that cannot be
+        identified or does not say everything. Choose another one whenever it computes
+        something else.
     progress : bool or callable
         Show a bar, or call with (cases done, cases in all, the `Case`).
 
@@ -96,7 +103,8 @@ def sweep(
     Raises
     ------
     ValueError, TypeError
-        If there is no case, a case cannot be stored, or the client is none.
+        If there is no case, or a function or case cannot be told from others for it to
+        be kept, or the client is none.
     RunInterrupted
         After Ctrl-C; `solution` is the list of cases, the unfinished ones "pending".
     """
@@ -104,16 +112,23 @@ def sweep(
     listed = [Case(dict(arguments), {}) for arguments in checked_cases(cases)]
     if not listed:
         raise ValueError("`cases` must hold at least one case, got none.")
-    store = None if directory is None else CaseStore(Path(directory), function)
-    if store is not None:
-        listed = [_known(case, store) for case in listed]
+    if key is not None:
+        check_kind("key", key, str)
+    store, paths = None, []
+    if directory is not None:
+        store = CaseStore(Path(directory), function, key)
+        # Before anything runs that could change what the arguments refer to.
+        paths = [store.path(case.arguments) for case in listed]
+        known = zip(listed, paths, strict=True)
+        listed = [_known(case, store.read(path)) for case, path in known]
     missing = [place for place, case in enumerate(listed) if not case.resumed]
     with _reporting(progress, listed) as report:
         try:
-            for place, outcome in _outcomes(function, listed, missing, client, workers):
+            tasks = {place: (function, listed[place].arguments) for place in missing}
+            for place, outcome in _outcomes(tasks, client, workers, key):
                 listed[place] = case = replace(listed[place], **outcome)
                 if store is not None and case.status == "finished":
-                    store.write(case.arguments, _record(case))
+                    store.write(paths[place], _record(case))
                 report(case)
         except KeyboardInterrupt:
             raise RunInterrupted(listed) from None
@@ -132,9 +147,8 @@ def checked_cases(cases: Any) -> list[Mapping[str, Any]]:
     return listed
 
 
-def _known(case: Case, store: CaseStore) -> Case:
+def _known(case: Case, found: dict[str, NDArray[Any]] | None) -> Case:
     """The case as the store has it, or as it was."""
-    found = store.read(case.arguments)
     if found is None:
         return case
     message, seconds = str(found.pop("#message")), float(found.pop("#seconds"))
@@ -146,21 +160,44 @@ def _record(case: Case) -> dict[str, Any]:
 
 
 def _outcomes(
-    function: Function,
-    cases: list[Case],
-    places: list[int],
+    tasks: Mapping[int, tuple[Function, Mapping[str, Any]]],
     client: Any,
     workers: int | None,
+    key: str | None,
 ) -> Iterator[tuple[int, dict[str, Any]]]:
     """Places and outcomes as they come."""
-    tasks = {place: (run_case, function, cases[place].arguments) for place in places}
     with executor_for(client, workers, len(tasks)) as executor:
         if executor is None:
             for place, task in tasks.items():
-                yield place, task[0](*task[1:])
+                yield place, run_case(*task)
             return
-        for place, outcome, error in finished_tasks(executor, tasks):
+        sent = {
+            place: (run_elsewhere, *task, key, _code_of(*task, key))
+            for place, task in tasks.items()
+        }
+        for place, outcome, error in finished_tasks(executor, sent):
             yield place, outcome if error is None else failure(error, float("nan"))
+
+
+def run_elsewhere(
+    function: Function, arguments: Mapping[str, Any], key: str | None, code: str | None
+) -> dict[str, Any]:
+    """As `run_case`, in another process: there a name may stand for other code."""
+    if code is not None and _code_of(function, arguments, key) != code:
+        error = RuntimeError(
+            "`function`, or something in the case, is other code in the process where "
+            "it was to run than here, or of another version; restart this process and "
+            "those of `client` so that all import the same."
+        )
+        return failure(error, float("nan"))
+    return run_case(function, arguments)
+
+
+def _code_of(
+    function: Function, arguments: Mapping[str, Any], key: str | None
+) -> str | None:
+    """What computes a case, as a digest without the rounding of a machine."""
+    return digest_or_none((function if key is None else key, arguments), sampled=False)
 
 
 @one_blas_thread()
