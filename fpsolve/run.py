@@ -21,6 +21,7 @@ from fpsolve.errors import (
 from fpsolve.progress import ProgressCallback
 from fpsolve.provenance import Stopwatch
 from fpsolve.recording import Recorder
+from fpsolve.run_description import describe_scheme
 from fpsolve.schedule import Schedule
 from fpsolve.solution import Solution
 
@@ -162,16 +163,11 @@ class Run:
         return replace(fallback, status=status, message=message)
 
     def _solution(self, status: str, message: str) -> Solution:
-        description = {
-            "name": self.scheme.name,
-            "order": self.scheme.order,
-            "options": dict(self.scheme.options),
-        }
         recorder, saves = self.recorder, self.schedule.saves[: self.keeper.n_saved]
         return Solution(
             model=self.scheme.model,
             grid=self.scheme.grid,
-            scheme=description,
+            scheme=describe_scheme(self.scheme),
             ds=self.schedule.ds,
             series=self.keeper.series(recorder.columns, recorder.rows),
             saved_s=np.array([self.schedule.s(step) for step in saves]),

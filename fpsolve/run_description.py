@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
@@ -12,20 +11,26 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from fpsolve._digests import SAMPLED, digest_of, plain
+from fpsolve.curves.samples import digest_of_curve
 from fpsolve.grids import PhaseSpaceGrid
+from fpsolve.identity import digest_or_none
 from fpsolve.models import LayDownModel
+from fpsolve.potentials.samples import digest_of_potential
+from fpsolve.schedule import Schedule, make_schedule
 from fpsolve.schemes import DriftKick, SemiLagrangian
 
 if TYPE_CHECKING:
     from fpsolve.solve import Scheme
 
-__all__ = ["RunDescription", "digest_of", "run_arguments"]
+__all__ = ["CODE", "RunDescription", "describe_scheme", "run_arguments"]
 
 Array = NDArray[np.float64]
 
 _SCHEMES: tuple[type[Any], ...] = (DriftKick, SemiLagrangian)
-# Where an object lies in memory is not what it is.
-_ADDRESS = re.compile(r" at 0x[0-9a-fA-F]+")
+# Keys of digests, and what these are digests of.
+CODE, _STEP = "code", "first_step"
+_DIGESTS = {SAMPLED: "values", CODE: "code", _STEP: "values"}
 # A value that takes more characters is not shown.
 _LONGEST = 50
 
@@ -57,16 +62,6 @@ def run_arguments(
     }
 
 
-def digest_of(values: Array | None) -> str | None:
-    """Return the SHA-256 of shape and bits; None for None."""
-    if values is None:
-        return None
-    values = np.ascontiguousarray(values, dtype=np.float64)
-    found = hashlib.sha256(str(values.shape).encode())
-    found.update(values.data)
-    return found.hexdigest()
-
-
 @dataclass(frozen=True)
 class RunDescription:
     """Everything that decides the bits of a result but versions and machine.
@@ -74,9 +69,12 @@ class RunDescription:
     Attributes
     ----------
     model : dict
-        A potential of user code is described by its values on the grid.
+        A potential of a user's own also by what it computes on the grid, a curve by
+        where it is on the steps of the run.
     grid : dict
     scheme : dict
+        One of a user's own also by the code of its class, and by what its first step
+        makes of `p0`.
     arguments : dict
         Those of `solve`; see `run_arguments`.
     start : dict
@@ -98,19 +96,13 @@ class RunDescription:
         arguments: Mapping[str, Any],
     ) -> RunDescription:
         """Return the description of ``solve(scheme, p0, **arguments)``."""
-        kind = type(scheme)
+        schedule = make_schedule(arguments["s_span"], arguments["ds"])
+        last = schedule.refined() if arguments["extrapolate"] else schedule
         return cls(
-            _plain(_describe_model(scheme.model, scheme.grid)),
-            _plain(scheme.grid.to_dict()),
-            _plain(
-                {
-                    "kind": scheme.name,
-                    "class": f"{kind.__module__}.{kind.__qualname__}",
-                    "order": scheme.order,
-                    **scheme.options,
-                }
-            ),
-            _plain(dict(arguments)),
+            plain(_describe_model(scheme.model, scheme.grid, last)),
+            plain(scheme.grid.to_dict()),
+            plain(_describe_scheme(scheme, p0, schedule)),
+            plain(dict(arguments)),
             {"p0": digest_of(p0), "reference": digest_of(reference)},
         )
 
@@ -140,7 +132,8 @@ class RunDescription:
         for name, digest in self.start.items():
             if other.start.get(name) != digest:
                 found.append(f"`{name}` holds other values")
-        return tuple(found)
+        # One function may differ in more than one of these.
+        return tuple(dict.fromkeys(found))
 
     def build_scheme(self) -> Scheme:
         """Return the scheme with its model and grid.
@@ -165,30 +158,75 @@ class RunDescription:
         )
 
 
-def _describe_model(model: LayDownModel, grid: PhaseSpaceGrid) -> dict[str, Any]:
+def _describe_model(
+    model: LayDownModel, grid: PhaseSpaceGrid, schedule: Schedule
+) -> dict[str, Any]:
+    """The model; a user's own parts by what they return where schemes ask them.
+
+    Forces are asked for at the centres of cells and between them, the curve at steps
+    and at halves of them.
+    """
     description = model.to_dict()
-    if not type(model.potential).__module__.startswith("fpsolve.") or (
-        description["potential"].get("kind") == "callable"
-    ):
-        # Names of functions say little about what they compute.
-        plane = grid.plane()
-        values = [model.potential.value(*plane), *model.potential.gradient(*plane)]
-        shape = grid.shape[:2]
-        stacked = np.array([np.broadcast_to(part, shape) for part in values])
-        description["potential"]["values"] = digest_of(stacked)
+    potential, curve = description["potential"], description["curve"]
+    if SAMPLED in potential:
+        finer = _refined(grid.xi1)[:, None], _refined(grid.xi2)[None, :]
+        places = grid.plane(), finer
+        potential[SAMPLED] = digest_of_potential(model.potential, *places)
+    if SAMPLED in curve:
+        halves = np.arange(2 * schedule.n_steps + 1, dtype=np.float64)
+        stops = schedule.start + schedule.ds / 2 * halves
+        curve[SAMPLED] = digest_of_curve(model.curve, stops)
     return description
 
 
-def _plain(value: Any) -> Any:
-    """Return the value as it comes back from JSON."""
-    text = json.dumps(value, default=_without_address, ensure_ascii=False)
-    return json.loads(_ADDRESS.sub("", text))
+def _refined(centres: Array) -> Array:
+    """Faces and centres of cells, and the middle between each two of them."""
+    spacing = centres[1] - centres[0]
+    quarters = np.arange(4 * centres.size + 1, dtype=np.float64) / 4
+    return np.asarray(centres[0] + spacing * (quarters - 0.5))
 
 
-def _without_address(value: Any) -> Any:
-    if isinstance(value, np.generic):
-        return value.item()
-    return value.tolist() if isinstance(value, np.ndarray) else repr(value)
+def _describe_scheme(scheme: Scheme, p0: Array, schedule: Schedule) -> dict[str, Any]:
+    kind = type(scheme)
+    description = {
+        "kind": scheme.name,
+        "class": f"{kind.__module__}.{kind.__qualname__}",
+        "order": scheme.order,
+        **scheme.options,
+    }
+    if kind in _SCHEMES:
+        return description
+    own = {CODE: _code_of(kind), _STEP: _first_step(scheme, p0, schedule)}
+    return {**description, **own}
+
+
+def describe_scheme(scheme: Scheme) -> dict[str, Any]:
+    """Return name, order and options of a scheme, ready for JSON.
+
+    Of a user's own class, which may have inherited a name, also a digest of its code.
+    """
+    kind = type(scheme)
+    return {
+        "name": scheme.name,
+        "order": scheme.order,
+        "options": dict(scheme.options),
+        **({} if kind in _SCHEMES else {CODE: _code_of(kind)}),
+    }
+
+
+def _code_of(kind: type[Any]) -> str | None:
+    return digest_or_none(kind, sampled=False)
+
+
+def _first_step(scheme: Scheme, p0: Array, schedule: Schedule) -> str | None:
+    """What a scheme of unknown code does to p0; None if it fails, as the run will."""
+    # A user's scheme raises whatever it likes.
+    try:
+        state = scheme.start(p0)
+        scheme.advance(state, schedule.start, schedule.ds)
+        return digest_of(scheme.density(state))
+    except Exception:
+        return None
 
 
 def _compare(name: str, old: Any, new: Any) -> Iterator[str]:
@@ -200,8 +238,11 @@ def _compare(name: str, old: Any, new: Any) -> Iterator[str]:
             yield from _compare(path, old.get(key), new.get(key))
     elif old != new:
         before, after = _text(old), _text(new)
-        if max(len(before), len(after)) > _LONGEST or "values" in name.split("."):
-            yield f"`{name.removesuffix('.values')}` holds other values"
+        owner, _, last = name.rpartition(".")
+        if last in _DIGESTS:
+            yield f"`{owner}` holds other {_DIGESTS[last]}"
+        elif max(len(before), len(after)) > _LONGEST:
+            yield f"`{name}` holds other values"
         else:
             yield f"`{name}` was {before}, is {after}"
 

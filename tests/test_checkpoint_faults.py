@@ -28,7 +28,7 @@ from fpsolve.checkpoints.status import status_of
 from fpsolve.checkpoints.store import PassStore
 from fpsolve.errors import CheckpointError, CheckpointMismatchError, FileFormatError
 from fpsolve.provenance import versions
-from fpsolve.schemes import drift_kick
+from fpsolve.schemes import drift_kick, semi_lagrangian
 
 
 @pytest.fixture(autouse=True)
@@ -297,6 +297,10 @@ def test_a_refusal_leaves_the_checkpoint_as_it_was(tmp_path):
     assert_same_bits(run(folder), run())
 
 
+# What makes a class look like one of this module.
+HOME = {"__module__": __name__, "__qualname__": "Scaled"}
+
+
 def isotropic(factor):
     return fp.IsotropicPotential(lambda r: factor * r**2 / 2, lambda r: factor * r)
 
@@ -312,6 +316,116 @@ def test_a_potential_of_user_code_is_compared_by_what_it_computes(tmp_path):
         run(folder, scheme=scheme(1.2))
     assert caught.value.differences == ("`potential` holds other values",)
     assert_same_bits(run(folder, scheme=scheme(1.0)), run(scheme=scheme(1.0)))
+
+
+class Swing(fp.MovingBelt):
+    """A curve whose amplitude is no parameter of it."""
+
+    amplitude = 0.0
+    autonomous = fixed = False
+
+    def position(self, s):
+        return self.amplitude * np.sin(s), 0.0 * s
+
+    def velocity(self, s):
+        return self.amplitude * np.cos(s), 0.0 * s
+
+    def displacement(self, s0, s1):
+        return self.amplitude * (np.sin(s1) - np.sin(s0)), 0.0
+
+
+def swing(amplitude):
+    return type("Swing", (Swing,), {"amplitude": amplitude})(0.0)
+
+
+class Jump(Swing):
+    """Its displacements over one half of a step are not those of its positions."""
+
+    def displacement(self, s0, s1):
+        moved = 0.1 if s0 >= 0.5 and s1 < 0.6 else 0.0
+        return super().displacement(s0, s1)[0] + moved, 0.0
+
+
+def test_a_curve_of_user_code_is_compared_by_where_it_is(tmp_path):
+    def scheme(curve):
+        return drift_kick(fp.LayDownModel(fp.QuadraticPotential(), 1.0, curve), GRID)
+
+    folder = left_at(5, tmp_path / "run", scheme=scheme(swing(0.1)))
+    for other in (swing(0.3), Jump(0.0)):
+        with pytest.raises(CheckpointMismatchError) as caught:
+            run(folder, scheme=scheme(other))
+        assert caught.value.differences == ("`curve` holds other values",)
+    with pytest.raises(ValueError, match="`curve` must not be of your own code to be "):
+        fp.resume(folder)
+    again = run(folder, scheme=scheme(swing(0.1)))
+    assert_same_bits(again, run(scheme=scheme(swing(0.1))))
+
+
+def test_a_class_of_the_user_is_not_resumed_as_the_one_whose_kind_it_has(tmp_path):
+    class Stiff(fp.potentials.Potential):
+        kind = "quadratic"
+        formula = latex = "B"
+
+        def value(self, xi1, xi2):
+            return xi1**2 + xi2**2
+
+        def gradient(self, xi1, xi2):
+            return 2 * xi1, 2 * xi2
+
+        def to_dict(self):
+            return {"kind": "quadratic", "sigma1": 1.0, "sigma2": 1.0}
+
+    own = drift_kick(fp.LayDownModel(Stiff(), 1.0), GRID)
+    folder = left_at(5, tmp_path / "run", scheme=own)
+    with pytest.raises(ValueError, match="`potential` must not be of your own code t"):
+        fp.resume(folder)
+    with pytest.raises(CheckpointMismatchError, match="`potential` holds other values"):
+        run(folder)
+
+
+def test_a_force_that_differs_between_the_cells_is_another(tmp_path):
+    # Characteristics start in the centres of cells and go anywhere.
+    faces = 0.5 * (GRID.xi1[1:] + GRID.xi1[:-1])
+
+    def scheme(step):
+        def gradient(xi1, xi2):
+            away = np.abs(xi1 - faces[5]) < 0.1 * GRID.spacing[0]
+            return xi1 + step * away, xi2 + 0.0 * xi1
+
+        own = fp.CallablePotential(fp.QuadraticPotential().value, gradient)
+        return semi_lagrangian(fp.LayDownModel(own, 1.0), GRID)
+
+    folder = left_at(5, tmp_path / "run", scheme=scheme(0.0))
+    with pytest.raises(CheckpointMismatchError, match="`potential` holds other values"):
+        run(folder, scheme=scheme(1e-9))
+
+
+class Scaled(drift_kick):
+    """A scheme whose parameter is no option of it."""
+
+    factor = 1.0
+
+    def advance(self, state, s, ds, n_steps=1):
+        super().advance(state, s, ds, n_steps)
+        state.values *= self.factor
+
+
+def test_a_scheme_of_user_code_is_compared_by_its_code_and_its_first_step(tmp_path):
+    def scheme(factor):
+        found = Scaled(MODEL, GRID)
+        found.factor = factor
+        return found
+
+    folder = left_at(5, tmp_path / "run", scheme=scheme(1.0))
+    with pytest.raises(CheckpointMismatchError) as caught:
+        run(folder, scheme=scheme(1.0 - 1e-12))
+    assert caught.value.differences == ("`scheme` holds other values",)
+    # The same name, and another method.
+    edited = type("Scaled", (Scaled,), {"density": lambda *_: P0, **HOME})(MODEL, GRID)
+    with pytest.raises(CheckpointMismatchError) as caught:
+        run(folder, scheme=edited)
+    assert "`scheme` holds other code" in caught.value.differences
+    assert_same_bits(run(folder, scheme=scheme(1.0)), run())
 
 
 def test_a_scheme_of_user_code_goes_on_by_solve_only(tmp_path):

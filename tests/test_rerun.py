@@ -193,6 +193,19 @@ def own_gradient(x, y):
     return x + 0 * y, y + 0 * x
 
 
+def test_a_class_of_the_user_is_not_run_again_as_the_one_it_inherits_from(tmp_path):
+    class Own(type(fp.drift_kick(MODEL, GRID))):
+        pass
+
+    solution = solved(Own(MODEL, GRID))
+    file = solution.save(tmp_path / "own.nc")
+    with pytest.raises(NotRepeatableError, match="a class of your own that calls"):
+        fp.rerun(file)
+    assert fp.compare(solution, fp.rerun(file, scheme=Own(MODEL, GRID))).equal
+    (named,) = fp.compare(solution, solved(fp.drift_kick(MODEL, GRID))).parameters
+    assert named.startswith("scheme.code: ")
+
+
 def test_for_a_potential_of_ones_own_the_model_must_be_given(tmp_path):
     own = fp.LayDownModel(fp.CallablePotential(own_value, own_gradient), 1.0)
     solution = solved(fp.drift_kick(own, GRID))

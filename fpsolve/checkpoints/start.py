@@ -8,9 +8,10 @@ from typing import IO, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from fpsolve._digests import digest_of
 from fpsolve.checkpoints.durable import opened_npz, write_durably
 from fpsolve.errors import FileFormatError
-from fpsolve.run_description import RunDescription, digest_of
+from fpsolve.run_description import RunDescription
 
 __all__ = ["START", "read_start", "write_start"]
 

@@ -1,4 +1,4 @@
-"""Schemes as dictionaries, and back."""
+"""Schemes from the dictionaries that describe them."""
 
 from __future__ import annotations
 
@@ -7,21 +7,13 @@ from typing import Any
 
 from fpsolve.grids import PhaseSpaceGrid
 from fpsolve.models import LayDownModel
+from fpsolve.run_description import CODE
 from fpsolve.schemes import drift_kick, semi_lagrangian
 from fpsolve.solve import Scheme
 
-__all__ = ["describe_scheme", "scheme_from_dict"]
+__all__ = ["scheme_from_dict"]
 
 _MAKERS: dict[str, Any] = {"drift_kick": drift_kick, "semi_lagrangian": semi_lagrangian}
-
-
-def describe_scheme(scheme: Scheme) -> dict[str, Any]:
-    """Name, order and options of a scheme, ready for JSON."""
-    return {
-        "name": scheme.name,
-        "order": scheme.order,
-        "options": dict(scheme.options),
-    }
 
 
 def scheme_from_dict(
@@ -35,6 +27,11 @@ def scheme_from_dict(
         If it is none of fpsolve.
     """
     name = description["name"]
+    if CODE in description:
+        raise ValueError(
+            f"`scheme` must be one of fpsolve, got a class of your own that calls "
+            f"itself {name!r}."
+        )
     if name not in _MAKERS:
         known = ", ".join(repr(one) for one in _MAKERS)
         raise ValueError(f"`scheme` must be one of {known}, got {name!r}.")

@@ -14,9 +14,9 @@ from fpsolve._blas import one_blas_thread
 from fpsolve._checks import check_integer, check_kind, check_real
 from fpsolve.grids import PhaseSpaceGrid
 from fpsolve.io.recipes import recipe
-from fpsolve.io.schemes import describe_scheme
 from fpsolve.models import LayDownModel
 from fpsolve.progress import ProgressCallback
+from fpsolve.run_description import describe_scheme
 from fpsolve.schemes import drift_kick
 from fpsolve.solution import Solution
 from fpsolve.solve import Scheme, solve
