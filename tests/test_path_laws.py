@@ -130,6 +130,17 @@ def test_a_law_of_the_user_s_own_needs_one_method(model):
     np.testing.assert_allclose(np.hypot(*paths.xi[0].T), 1.0, rtol=1e-15)
 
 
+def test_a_law_that_draws_from_a_generator_of_its_own_is_refused(model):
+    class Own:
+        generator = np.random.default_rng(1)
+
+        def sample(self, rng, n):
+            return self.generator.normal(size=(n, 2)), rng.uniform(0, 1, n)
+
+    with pytest.raises(ValueError, match="`initial` must draw from the generator that"):
+        fp.sample_paths(model, 10, 0.1, 0.1, seed=1, initial=Own())
+
+
 def test_laws_describe_themselves():
     grid = fp.PhaseSpaceGrid(5.0, (20, 20, 8))
     laws = {

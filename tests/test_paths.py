@@ -117,6 +117,21 @@ def test_given_starts_and_kept_ends_travel_to_workers(model, small_batches):
     assert np.array_equal(here.states, there.states)
 
 
+class OtherCode(ThreadPoolExecutor):
+    """A process that imported a module before it was edited."""
+
+    def submit(self, function, code, *arguments):
+        return super().submit(function, "old" + code, *arguments)
+
+
+def test_a_worker_with_other_code_is_not_believed(model):
+    with (
+        OtherCode(1) as executor,
+        pytest.raises(RuntimeError, match="is other code"),
+    ):
+        fp.sample_paths(model, 10, 1.0, 0.1, seed=9, client=executor)
+
+
 @pytest.mark.parametrize("curve", CURVES)
 def test_a_continued_run_equals_an_uninterrupted_one_bitwise(curve):
     model = fp.LayDownModel(fp.PowerPotential(4.0), 0.8, curve)
@@ -147,6 +162,23 @@ def test_a_replayed_path_goes_through_what_was_saved_bitwise(curve):
     assert np.array_equal(path.eta, paths.eta[:, 211])
     every = paths.replay(211, every=8)
     assert np.array_equal(every.xi, path.xi[[0, 8, 16, 20]])
+
+
+def test_a_replay_in_a_potential_that_has_changed_is_noticed():
+    stiffness = [1.0]
+
+    def value(xi1, xi2):
+        return stiffness[0] * (xi1**2 + xi2**2) / 2
+
+    def gradient(xi1, xi2):
+        return stiffness[0] * xi1, stiffness[0] * xi2
+
+    model = fp.LayDownModel(fp.CallablePotential(value, gradient), 1.0)
+    paths = fp.sample_paths(model, 3, 1.0, 0.1, seed=3)
+    assert np.array_equal(paths.replay(1).xi[-1], paths.xi[-1, 1])
+    stiffness[0] = 4.0
+    with pytest.warns(UserWarning, match=r"the paths end 0\.\d+ away in xi from where"):
+        paths.replay(1)
 
 
 def test_paths_that_were_not_kept_can_be_replayed(model):

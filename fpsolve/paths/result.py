@@ -276,6 +276,12 @@ class Paths:
         """States (5, n) at which some of the paths begin."""
         if self.kept:
             return self.start[:, first : first + n].copy()
+        if self.ensemble.law is None:
+            raise ValueError(
+                "the law of the start must be known for this, got paths from a file "
+                "that keeps no positions and whose law was the user's own code; sample "
+                "them again."
+            )
         return self.ensemble.initial_state(first, n)
 
     def to_xarray(self) -> xarray.Dataset:

@@ -24,7 +24,8 @@ from fpsolve.errors import GridMismatchError, NonFinitePathError, RunInterrupted
 from fpsolve.grids import PhaseSpaceGrid, check_grid
 from fpsolve.memory import OVERHEAD, check_memory
 from fpsolve.models import LayDownModel, check_model
-from fpsolve.paths.batch import Batch, BatchRun, batches_of, run_batch
+from fpsolve.paths.batch import Batch, BatchRun, batches_of
+from fpsolve.paths.elsewhere import check_repeats, code_of, run_there
 from fpsolve.paths.ensemble import Ensemble, GivenStart
 from fpsolve.paths.integrators import METHODS
 from fpsolve.paths.laws import PointLaw
@@ -227,15 +228,16 @@ def run_elsewhere(
             f"`client` must have a method submit(f, *args), got {client!r}; pass a "
             "dask.distributed client or an executor."
         )
+    # Given points travel with their own batch only.
+    given = isinstance(ensemble.law, GivenStart) or states is not None
+    alone = replace(ensemble, law=None) if given else ensemble
+    code = code_of(alone)
     futures: deque[tuple[int, Any]] = deque()
     for first, n in batches_of(ensemble.n_paths):
-        # Given points travel with their own batch only.
-        given = isinstance(ensemble.law, GivenStart) or states is not None
         state = part(states, first, n) if given else None
         if given and state is None:
             state = ensemble.initial_state(first, n)
-        alone = replace(ensemble, law=None) if given else ensemble
-        futures.append((n, client.submit(run_batch, alone, first, n, state)))
+        futures.append((n, client.submit(run_there, code, alone, first, n, state)))
     n_steps = ensemble.schedule.n_steps - ensemble.first_step
     while futures:
         n, future = futures.popleft()
@@ -334,6 +336,7 @@ def law_of(initial: Any, n_paths: int) -> Any:
     if initial is None:
         return PointLaw()
     if hasattr(initial, "sample"):
+        check_repeats(initial)
         return initial
     if not (isinstance(initial, tuple | list) and len(initial) == 2):
         raise TypeError(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
@@ -51,7 +52,7 @@ class Trajectory:
 def traced(paths: Paths, first: int, n: int) -> Iterator[tuple[int, Array]]:
     """Number of the first step and states (n_steps, 5, n) of some paths, leg by leg.
 
-    The first leg is the start alone.
+    The first leg is the start alone. Warns if the end is not the one that was sampled.
     """
     paths.check_model()
     ensemble, state = paths.ensemble, paths.states_at_start(first, n)
@@ -63,6 +64,20 @@ def traced(paths: Paths, first: int, n: int) -> Iterator[tuple[int, Array]]:
         ensemble.integrator.advance(state, first, step, n_steps, trace)
         yield step + 1, trace
         step += n_steps
+    if paths.kept:
+        _warn_unless_equal(state, paths.end[:, first : first + n])
+
+
+def _warn_unless_equal(state: Array, sampled: Array) -> None:
+    if not np.array_equal(state, sampled):
+        away = float(np.max(np.abs(state - sampled)[:2]))
+        warnings.warn(
+            f"the paths end {away:.2g} away in xi from where they ended when they were "
+            "sampled: the potential or the curve computes something else now, or this "
+            "machine rounds in another way",
+            UserWarning,
+            stacklevel=3,
+        )
 
 
 def trajectory(paths: Paths, k: int, every: int) -> Trajectory:
