@@ -2,14 +2,12 @@
 
 import errno
 import signal
-import subprocess
-import sys
 from contextlib import contextmanager
 
 import numpy as np
 import pytest
 from checkpoint_runs import Killed, assert_same_bits, left_at
-from command_line import assert_mistake, files
+from command_line import HANGS, assert_mistake, command_waiting_at, files
 
 from fpsolve import io
 from fpsolve.checkpoints import snapshots
@@ -237,27 +235,11 @@ def test_a_folder_of_something_else_is_a_mistake(fpsolve, config, tmp_path):
 def test_a_process_that_is_killed_leaves_a_run_that_can_be_resumed(
     fpsolve, config, whole, tmp_path
 ):
-    # A progress bar that waits before the checkpoint at step 12, for the kill.
-    code = (
-        "import sys, time; from contextlib import contextmanager\n"
-        "from fpsolve.cli import main, progress\n"
-        "@contextmanager\n"
-        "def bar():\n"
-        "    def report(n, total, s):\n"
-        "        if n == 12: print('here', flush=True); time.sleep(60)\n"
-        "    yield report\n"
-        "progress.progress_bar = bar\n"
-        "main()"
-    )
-    words = ["run", str(config), "--out", "out", "--checkpoint", "2", "--no-figures"]
-    process = subprocess.Popen(
-        [sys.executable, "-c", code, *words],
-        stdout=subprocess.PIPE, text=True, cwd=tmp_path,
-    )  # fmt: skip
-    while process.stdout.readline().strip() != "here":
-        assert process.poll() is None
+    # Before the checkpoint at this step, the fourth of the second pass.
+    words = ["run", config, "--out", "out", "--checkpoint", "2", "--no-figures"]
+    process = command_waiting_at(12, *words, cwd=tmp_path)
     process.send_signal(signal.SIGKILL)
-    process.communicate()
+    process.communicate(timeout=HANGS)
     assert status_of(tmp_path / KEPT).n_done == 10
     assert fpsolve("resume", KEPT).exit_code == 0
     assert_same_bits(io.load(tmp_path / "out" / "small.nc"), whole)

@@ -1,16 +1,12 @@
 """`fpsolve paths` samples what a file asks for; a mistake costs one line, no file."""
 
-import os
 import signal
-import subprocess
-import sys
-import time
 from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
 import pytest
-from command_line import assert_mistake, files
+from command_line import HANGS, assert_mistake, command_waiting_at, files
 from solutions import relaxing_solution
 
 import fpsolve as fp
@@ -302,27 +298,13 @@ def test_help_shows_a_working_example(fpsolve, command):
     assert f"Example: fpsolve {command}" in result.stdout
 
 
-def test_a_signal_stops_the_sampling_and_keeps_what_is_done(fpsolve, config, tmp_path):
-    # Compiled here, the kernels are ready when the signal comes.
-    fpsolve("paths", config, "--out", "warm", "--no-figures")
-    # Eight thousand million path-steps take a minute, so the signal comes amidst.
-    long = CONFIG.replace("s_end = 1.0", "s_end = 1000.0")
-    long = long.replace("n_paths = 20", "n_paths = 1000000")
-    config.write_text(long.replace("save_every = 0.5", "save_at = [0.0, 0.125]"))
-    process = subprocess.Popen(
-        [sys.executable, "-m", "fpsolve", "paths", str(config)],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        cwd=tmp_path,
-        env={**os.environ, "PYTHONPATH": str(ROOT)},
-    )
-    for line in process.stdout:
-        if line.startswith("result"):
-            break
-    time.sleep(3)
+def test_a_signal_stops_the_sampling_and_keeps_what_is_done(config, tmp_path):
+    at = "save_at = [0.0, 0.125, 0.5, 1.0]"
+    config.write_text(CONFIG.replace("save_every = 0.5", at))
+    # Four steps of twenty paths: there the third one has not been kept yet.
+    process = command_waiting_at(80, "paths", config, cwd=tmp_path)
     process.send_signal(signal.SIGINT)
-    _, stderr = process.communicate(timeout=60)
+    _, stderr = process.communicate(timeout=HANGS)
     assert process.returncode == 130, stderr
     assert "interrupted" in stderr
     assert "Traceback" not in stderr

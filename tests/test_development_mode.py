@@ -3,7 +3,7 @@
 import subprocess
 import sys
 
-from command_line import COMPILING
+from command_line import COMPILING, HANGS
 
 
 def test_the_example_leaves_nothing_unclosed_and_nothing_deprecated(tmp_path):
@@ -12,7 +12,7 @@ def test_the_example_leaves_nothing_unclosed_and_nothing_deprecated(tmp_path):
     words = ["run", "--example", "laydown", "--out", str(tmp_path / "out")]
     called = subprocess.run(
         [sys.executable, "-X", "dev", "-W", "error", "-m", "fpsolve", *words],
-        capture_output=True, text=True, timeout=120, check=False,
+        capture_output=True, text=True, timeout=HANGS, check=False,
     )  # fmt: skip
     assert called.stderr.removeprefix(COMPILING) == ""
     assert called.returncode == 0
