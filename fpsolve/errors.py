@@ -336,7 +336,7 @@ class SteadyStateError(FpsolveError):
     def __init__(self, residual: float, tolerance: float) -> None:
         super().__init__(
             f"steady state not reached: residual {residual:.2g} exceeds tolerance "
-            f"{tolerance:g}; allow more iterations or enlarge `tolerance`."
+            f"{tolerance:g}; refine the grid, shorten `ds` or enlarge `tolerance`."
         )
         self.residual = residual
         self.tolerance = tolerance

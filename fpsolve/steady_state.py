@@ -3,72 +3,56 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+import warnings
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.special import i0e, i1e
 
-from fpsolve import diagnostics, initial
+from fpsolve import diagnostics
 from fpsolve._blas import one_blas_thread
 from fpsolve._checks import check_flag, check_real, check_tolerance
-from fpsolve.errors import DomainTooSmallError, SteadyStateError
-from fpsolve.grids import PhaseSpaceGrid
+from fpsolve.errors import DomainTooSmallError, ToleranceError
+from fpsolve.grids import PhaseSpaceGrid, check_grid
 from fpsolve.models import LayDownModel
 from fpsolve.potentials import LinearPotential
-from fpsolve.schemes import drift_kick
-from fpsolve.schemes.form import State
+from fpsolve.schemes import DriftKick, drift_kick
 from fpsolve.solve import Scheme, checked_scheme
+from fpsolve.stationary.at_rest import at_rest
+from fpsolve.stationary.estimates import (
+    DENSITY,
+    box_error,
+    field_error,
+    scaled,
+    signed_error,
+    total,
+)
+from fpsolve.stationary.iteration import Stationary, settled, stationary
+from fpsolve.stationary.other_schemes import judged, own_density
+from fpsolve.stationary.refinement import Refined, refined
+from fpsolve.stationary.remedies import remedy
+from fpsolve.stationary.result import SteadyState
 from fpsolve.suggestions import suggest_step
 
 __all__ = ["SteadyState", "steady_state"]
 
 Array = NDArray[np.float64]
 
-# One application of the map covers about this arclength: long enough for the slow
-# modes to move, short enough that the fast ones cost few steps.
-STRIDE = 1.0
-RESTART = 20
-OUTER = 12
 # A stride of more steps than this would never end.
 SHORTEST = 1e-9
-
-
-@dataclass(frozen=True, eq=False)
-class SteadyState:
-    """A density that (7) leaves unchanged, and how well it does.
-
-    Attributes
-    ----------
-    density : ndarray, shape (n1, n2, n_alpha)
-        Normalised to mass one on the grid.
-    residual : float
-        ∫ |p_{s+σ} − p_s| dξ dα / σ of the scheme over a stride σ of about one: the
-        rate at which the discrete equation still changes the density.
-    grid : PhaseSpaceGrid
-    ds : float
-        Step of the scheme, on which the stationary density of a splitting depends to
-        its order.
-    n_applications : int
-        Evolutions over the stride that it took.
-    error : float or None
-        Estimated ∫ |p − p_exact| due to ds, with `extrapolate`.
-    """
-
-    density: Array
-    residual: float
-    grid: PhaseSpaceGrid
-    ds: float
-    n_applications: int
-    error: float | None = None
-
-    def marginal(self, which: str) -> Array:
-        """∫ p over the other variables: "xi", "alpha", "xi1" or "xi2"."""
-        return diagnostics.marginal(self.density, self.grid, which)
-
-    def moments(self) -> dict[str, float]:
-        """E ξ, covariance of ξ, E cos α (−v for every potential), E sin α (0)."""
-        return diagnostics.moments(self.density, self.grid)
+# High order costs next to nothing beside the angle step.
+INTERPOLATION_ORDER = 12
+# Error of one run at the first step, before three step lengths are combined; and
+# A² ds of it, within which they have an asymptotic law.
+FIRST_ERROR, LARGEST_TURN = 0.05, 1.5
+# Share of the tolerance for the step; the grid takes the most.
+STEP_SHARE = 0.2
+# Above, an estimate is no more than a sign that nothing is resolved.
+WORTHLESS = 0.1
+# The combination that a single step length is compared with has an error, too.
+COMPARED = 1.25
 
 
 @one_blas_thread()
@@ -80,41 +64,59 @@ def steady_state(
     tolerance: float = 1e-9,
     extrapolate: bool = False,
     boundary_tolerance: float = 1e-3,
+    error_tolerance: float = 1e-4,
 ) -> SteadyState:
-    """Density with L* p = 0 on the grid, and its residual.
+    """Density with L* p = 0 on the grid, with its error in L1.
 
     On a fixed belt it is p_S = c e^{−B} (10), whatever the noise. On a belt of
-    constant speed v the fixed point of the scheme is computed by GMRES on the
-    evolution over about a unit of arclength, until the residual is below
-    `tolerance`. Conserved: mass. The result carries the scheme's error in ds (order
-    2); `extrapolate` removes its leading part and estimates it.
+    constant speed v it is the fixed point of an evolution over about a unit of
+    arclength, extrapolated from three step lengths, found by a recycled Krylov
+    iteration on half of the cells, three quarters, and all. Conserved: mass. Steps are
+    shortened until their error is a fifth of `error_tolerance`; the cells and the box
+    are as given, so that their errors can only be estimated: compare `errors`.
 
     Parameters
     ----------
     model : LayDownModel or Scheme
-        A model is solved with `drift_kick(model, grid, balanced=True)`. A scheme
-        must be linear (not `positive`, not limited).
+        A model on a moving belt is solved with `drift_kick(model, grid,
+        interpolation_order=12)`. A scheme must be linear (not `positive`, not
+        limited). Of another than `drift_kick`, and of p/p_S, the density is that of
+        one step as it is, and its error is told by its distance from the density of
+        the model.
     grid : PhaseSpaceGrid
         May be left out for a scheme, which has one.
     ds : float, optional
-        Step; proposed by `suggest_step` if left out.
+        A step to use as it is, however large its error; ds alone unless `extrapolate`.
     tolerance : float
         Residual to reach.
     extrapolate : bool
-        Solve with ds and ds/2 and combine (Richardson).
+        With `ds`, or another scheme than `drift_kick`: combine ds with ds/2, and with
+        ds/3 if that is `drift_kick`.
     boundary_tolerance : float
         Largest share of mass in the outermost cells.
+    error_tolerance : float
+        Error in L1 above which the result comes with a warning.
 
     Raises
     ------
     ValueError
-        If no stationary density exists: a rotating or oscillating nozzle, a potential
-        that does not confine, no noise on a moving belt, a linear potential too weak
-        for the belt, or a scheme that is not linear.
+        If there is no unique stationary density: a rotating or oscillating nozzle, a
+        potential that does not confine, no noise, a linear potential too weak for the
+        belt; for a scheme that is not linear; or for fewer than 6 cells in a
+        direction on a moving belt.
     SteadyStateError
         If the residual stays above `tolerance`.
     DomainTooSmallError
         If the box cuts the density off.
+    ToleranceError
+        If the error is estimated above 0.1 (and above `error_tolerance`): the grid
+        does not resolve the density.
+
+    Warns
+    -----
+    UserWarning
+        If the error is estimated above `error_tolerance`, with its parts and with the
+        grid that would do.
 
     References
     ----------
@@ -122,16 +124,65 @@ def steady_state(
     """
     scheme = scheme_for(model, grid)
     check_stationary(scheme.model)
-    tolerance = check_tolerance("tolerance", tolerance)
+    request = Request(
+        None if ds is None else checked_step(ds),
+        check_tolerance("tolerance", tolerance),
+        check_flag("extrapolate", extrapolate),
+        check_tolerance("error_tolerance", error_tolerance),
+    )
     boundary_tolerance = check_tolerance("boundary_tolerance", boundary_tolerance)
-    extrapolate = check_flag("extrapolate", extrapolate)
-    ds = checked_step(suggest_step(scheme.model, scheme.grid) if ds is None else ds)
-    result = fixed_point(scheme, ds, tolerance)
-    if extrapolate and not scheme.model.curve.fixed:
-        finer = fixed_point(scheme, ds / 2, tolerance, start=result.density)
-        result = combined(result, finer, scheme.order)
-    check_boundary(result, boundary_tolerance)
+    if scheme.model.curve.fixed:
+        result, order = at_rest(scheme, request.ds or first_step(scheme)), 2.0
+    elif isinstance(scheme, DriftKick) and not scheme.balanced:
+        result, order = by_palindrome(scheme, request)
+    else:
+        result, order = by_scheme(scheme, request)
+    check_boundary(result, boundary_tolerance, request.error_tolerance, order)
+    check_error(result, request.error_tolerance, order)
     return result
+
+
+@dataclass(frozen=True)
+class Request:
+    """The arguments of `steady_state`, checked."""
+
+    ds: float | None
+    tolerance: float
+    extrapolate: bool
+    error_tolerance: float
+
+
+def by_palindrome(scheme: DriftKick, request: Request) -> tuple[SteadyState, float]:
+    """On coarser grids first; with the order at which their densities converge."""
+    goal = STEP_SHARE * min(request.error_tolerance, WORTHLESS)
+
+    def solver(here: DriftKick, start: Array, ds: float) -> Stationary:
+        # The residual matters on the finest grid only.
+        residual = request.tolerance if here.grid == scheme.grid else math.inf
+        if request.ds is None:
+            return settled(here, ds, start, goal, residual)
+        return stationary(here, ds, start, goal, residual, request.extrapolate)
+
+    found = refined(scheme, request.ds or first_step(scheme), solver)
+    combined = request.extrapolate or request.ds is None
+    return with_errors(scheme, found, combined), found.order
+
+
+def by_scheme(scheme: Scheme, request: Request) -> tuple[SteadyState, float]:
+    """The scheme's own density, compared with that of the palindrome."""
+    palindrome = scheme_for(scheme.model, scheme.grid)
+    assert isinstance(palindrome, DriftKick)
+    reference, order = by_palindrome(palindrome, replace(request, ds=None))
+    ds = request.ds or float(suggest_step(scheme.model, scheme.grid))
+    own = own_density(scheme, ds, request.tolerance, request.extrapolate)
+    return judged(scheme, own, reference), order
+
+
+def first_step(scheme: Scheme) -> float:
+    """A step that is long, but within the law of its error."""
+    ds = float(suggest_step(scheme.model, scheme.grid, FIRST_ERROR))
+    turn = LARGEST_TURN / max(scheme.model.noise, 1e-3) ** 2
+    return min(ds, 1.0 / math.ceil(1.0 / turn))
 
 
 def checked_step(ds: float) -> float:
@@ -152,7 +203,12 @@ def scheme_for(model: LayDownModel | Scheme, grid: PhaseSpaceGrid | None) -> Sch
     if isinstance(model, LayDownModel):
         if grid is None:
             raise TypeError("`grid` is needed with a model; pass a PhaseSpaceGrid.")
-        return drift_kick(model, grid, balanced=model.potential.normalisable)
+        check_grid(grid)
+        # On a belt p/p_S grows without bound along it.
+        return drift_kick(
+            model, grid, balanced=model.curve.fixed and model.potential.normalisable,
+            interpolation_order=INTERPOLATION_ORDER,
+        )  # fmt: skip
     checked_scheme(model, "model")
     if grid is not None and grid != model.grid:
         raise ValueError(f"`grid` must be the scheme's own {model.grid}, got {grid}.")
@@ -176,13 +232,14 @@ def check_stationary(model: LayDownModel) -> None:
             f"`potential` must confine, got {model.potential!r}: exp(-B) has no "
             "finite integral."
         )
-    if model.curve.fixed:
-        return
     if not model.noise > 0:
         raise ValueError(
-            "`noise` must be positive on a moving belt, got 0; without noise the "
-            "density does not converge."
+            "`noise` must be positive, got 0; without noise there are many stationary "
+            "densities on a fixed belt, `initial.equilibrium` among them, and none is "
+            "reached on a moving one."
         )
+    if model.curve.fixed:
+        return
     check_linear_strength(model)
 
 
@@ -200,91 +257,58 @@ def check_linear_strength(model: LayDownModel) -> None:
         )
 
 
-def fixed_point(
-    scheme: Scheme, ds: float, tolerance: float, start: Array | None = None
-) -> SteadyState:
-    """The density that the scheme reproduces over a stride, to `tolerance`."""
-    evolution = Evolution(scheme, ds)
-    density = initial.equilibrium(scheme.grid, scheme.model.potential)
-    density = density if start is None else start
-    image = evolution(density)
-    residual = evolution.residual(density, image)
-    for _ in range(0 if scheme.model.curve.fixed else OUTER):
-        if residual <= tolerance:
-            break
-        density = evolution.improved(density, image, tolerance)
-        image = evolution(density)
-        residual = evolution.residual(density, image)
-    if not (scheme.model.curve.fixed or residual <= tolerance):
-        raise SteadyStateError(residual, tolerance)
-    return SteadyState(density, residual, scheme.grid, ds, evolution.n_applications)
-
-
-class Evolution:
-    """The density evolved over a stride, as a map for a Krylov solver."""
-
-    def __init__(self, scheme: Scheme, ds: float) -> None:
-        self.scheme, self.ds = scheme, ds
-        self.n_steps = max(1, round(STRIDE / ds))
-        self.n_applications = 0
-
-    def __call__(self, p: Array) -> Array:
-        """Evolve p over the stride."""
-        self.n_applications += 1
-        state: State = self.scheme.start(p)
-        self.scheme.advance(state, 0.0, self.ds, self.n_steps)
-        return self.scheme.density(state).copy()
-
-    def residual(self, p: Array, image: Array) -> float:
-        """∫ |p_{s+σ} − p_s| dξ dα / σ over the stride σ."""
-        distance = diagnostics.l1_distance(image, p, self.scheme.grid)
-        return distance / (self.n_steps * self.ds)
-
-    def improved(self, p: Array, image: Array, tolerance: float) -> Array:
-        """A better fixed point: p + d with (I − E′) d = E(p) − p, then normalised.
-
-        E is homogeneous but, because of its mass correction, not quite linear; its
-        derivative at p is taken by a difference, which is exact up to that
-        correction, and the outer iteration removes the rest.
-        """
-        from scipy.sparse.linalg import LinearOperator, gmres
-
-        defect = (image - p).ravel()
-
-        def lost(direction: Array) -> Array:
-            size = float(np.abs(direction).sum())
-            if size == 0.0:
-                return direction
-            scale = 0.1 * float(np.abs(p).sum()) / size
-            moved = self(p + scale * direction.reshape(p.shape))
-            derivative: Array = direction - (moved - image).ravel() / scale
-            return derivative
-
-        operator = LinearOperator((p.size, p.size), matvec=lost, dtype=np.float64)
-        size = float(np.abs(defect).sum()) * self.scheme.grid.cell_volume
-        goal = min(max(0.05 * tolerance / size, 1e-6), 1e-2)
-        update, _ = gmres(operator, defect, rtol=goal, restart=RESTART, maxiter=1)
-        better = p + update.reshape(p.shape)
-        normalised: Array = better / diagnostics.mass(better, self.scheme.grid)
-        return normalised
-
-
-def combined(coarse: SteadyState, fine: SteadyState, order: int) -> SteadyState:
-    """Richardson combination of two stationary densities, with its estimate."""
-    gain = 1.0 / (2**order - 1)
-    change = fine.density - coarse.density
+def with_errors(scheme: Scheme, found: Refined, extrapolated: bool) -> SteadyState:
+    """The density on the finest grid with all parts of its error."""
+    p, grid = found.finest.density, scheme.grid
+    step = field_error(found.finest.step, p, grid)
+    parts: Mapping[str, Mapping[str, float]] = {
+        "step": step if extrapolated else scaled(step, COMPARED),
+        "grid": field_error(found.grid_error, p, grid),
+        "box": box_error(p, grid),
+        "iteration": field_error(found.finest.iteration, p, grid),
+    }
+    errors = total(parts)
     return SteadyState(
-        density=fine.density + gain * change,
-        residual=fine.residual,
-        grid=fine.grid,
-        ds=coarse.ds,
-        n_applications=coarse.n_applications + fine.n_applications,
-        error=gain * diagnostics.l1_distance(fine.density, coarse.density, fine.grid),
+        density=p,
+        residual=found.finest.residual,
+        grid=grid,
+        ds=found.finest.ds,
+        n_applications=found.n_applications,
+        error=errors.pop(DENSITY),
+        errors={name: part[DENSITY] for name, part in parts.items()},
+        moment_errors=errors,
+        splitting=signed_error(found.finest.splitting, p, grid),
+        extrapolated=extrapolated,
+        model=scheme.model,
     )
 
 
-def check_boundary(result: SteadyState, tolerance: float) -> None:
-    """Raise DomainTooSmallError if the box cuts the density off."""
+def check_boundary(
+    result: SteadyState, boundary_tolerance: float, tolerance: float, order: float
+) -> None:
+    """Raise if there is mass at the edge: the box cuts it off, or it is but noise."""
     share = diagnostics.boundary_mass(result.density, result.grid)
-    if not share <= tolerance:
-        raise DomainTooSmallError(share, result.grid.half_width, tolerance=tolerance)
+    if share <= boundary_tolerance:
+        return
+    if result.errors["grid"] > max(result.errors["box"], WORTHLESS):
+        raise ToleranceError(result.error, tolerance, remedy(result, tolerance, order))
+    raise DomainTooSmallError(
+        share, result.grid.half_width, tolerance=boundary_tolerance
+    )
+
+
+def check_error(result: SteadyState, tolerance: float, order: float) -> None:
+    """Warn above the tolerance; ToleranceError where nothing is resolved."""
+    if result.error <= tolerance:
+        return
+    advice = remedy(result, tolerance, order)
+    if not result.error <= max(WORTHLESS, tolerance):
+        raise ToleranceError(result.error, tolerance, advice)
+    parts = ", ".join(f"{name} {size:.1g}" for name, size in result.errors.items())
+    warnings.warn(
+        f"the stationary density has an L1 error of about {result.error:.1g} "
+        f"({parts}), above `error_tolerance` = {tolerance:g}; {advice}, or raise "
+        "`error_tolerance` if this is enough.",
+        UserWarning,
+        stacklevel=4,
+    )

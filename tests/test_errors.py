@@ -68,8 +68,8 @@ EXAMPLES = [
     ),
     (
         errors.SteadyStateError(residual=1e-3, tolerance=1e-8),
-        "steady state not reached: residual 0.001 exceeds tolerance 1e-08; allow more "
-        "iterations or enlarge `tolerance`.",
+        "steady state not reached: residual 0.001 exceeds tolerance 1e-08; refine "
+        "the grid, shorten `ds` or enlarge `tolerance`.",
     ),
     (
         errors.ToleranceError(reached=2.5e-6, tolerance=1e-10),

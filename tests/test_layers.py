@@ -16,7 +16,7 @@ FLOORS = {
     "schemes": 3,
     "run": 4, "run_description": 4, "keeping": 4, "checkpoints": 4, "resuming": 4,
     "solution": 4, "solve": 4, "recording": 4, "extrapolation": 4, "steady_state": 4,
-    "suggestions": 4,
+    "suggestions": 4, "stationary": 4,
     "io": 6, "plotting": 6, "config": 6, "studies": 6, "cli": 6, "interop": 6,
     "comparisons": 6, "rerunning": 6,
     "report": 6,

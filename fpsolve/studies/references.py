@@ -39,15 +39,22 @@ class Reference:
     ----------
     density : ndarray, shape (n1, n2, n_alpha)
     moments, errors : mapping
-        Values of `MOMENTS`, and their estimated step errors (NaN if unknown).
+        Values of `MOMENTS`, and their estimated errors (NaN if unknown): of a run in
+        ds, of a stationary density in all.
     distance : float
-        Estimated L1 step error of the density; NaN if unknown.
+        Estimated L1 error of the density; NaN if unknown.
+    half_step_errors : mapping
+        What a run with ds/2 alone, and paths with that step, would be off.
+    half_step_distance : float
+        The same in L1.
     """
 
     density: Array
     moments: Mapping[str, float]
     errors: Mapping[str, float]
     distance: float
+    half_step_errors: Mapping[str, float]
+    half_step_distance: float
 
 
 def places(
@@ -75,31 +82,38 @@ def places(
 
 
 def reference_at(density: Solution | SteadyState, s: float) -> Reference:
-    """The density at s, with moments and step errors.
+    """The density at s, with moments and errors.
 
     The moments of an extrapolated run are the extrapolated moments.
     """
     if isinstance(density, SteadyState):
-        moments = density.moments()
-        errors = dict.fromkeys(moments, math.nan)
-        distance = math.nan if density.error is None else density.error
-        p = density.density
-    else:
-        p = density.density(s)
-        record = int(np.argmin(np.abs(density.series["s"] - s)))
-        moments, errors = _recorded(density, record)
-        distance = _distance(density, s)
+        return _stationary_reference(density)
+    record = int(np.argmin(np.abs(density.series["s"] - s)))
+    moments, errors = _recorded(density, record)
+    distance = _distance(density, s)
     moments["mean_square"], errors["mean_square"] = _mean_square(moments, errors)
-    return Reference(p, moments, errors, distance)
+    # The Richardson estimate is that of the finer run, with ds/2.
+    return Reference(density.density(s), moments, errors, distance, errors, distance)
+
+
+def _stationary_reference(density: SteadyState) -> Reference:
+    """A stationary density with all of its error, and what one step would do."""
+    moments, errors = density.moments(), dict(density.moment_errors)
+    quarter = {name: size / 4 for name, size in density.splitting.items()}
+    for one in (errors, quarter):
+        value, one["mean_square"] = _mean_square(moments, one)
+    moments["mean_square"] = value
+    return Reference(
+        density.density, moments, errors, density.error, quarter, quarter["density"]
+    )
 
 
 def describe(density: Solution | SteadyState) -> dict[str, Any]:
     """Where a density comes from: name, options and steps."""
     if isinstance(density, SteadyState):
-        extrapolated = density.error is not None
         return {
             "name": "steady_state", "options": {}, "ds": density.ds,
-            "extrapolated": extrapolated, "residual": density.residual,
+            "extrapolated": density.extrapolated, "residual": density.residual,
         }  # fmt: skip
     return {
         "name": density.scheme["name"],
@@ -110,8 +124,8 @@ def describe(density: Solution | SteadyState) -> dict[str, Any]:
 
 
 def model_of(density: Solution | SteadyState, paths: Any) -> LayDownModel | None:
-    """The model of a density; a stationary one does not know its own."""
-    found = paths.model if isinstance(density, SteadyState) else density.model
+    """The model of a density, or of the paths where it does not know its own."""
+    found = paths.model if density.model is None else density.model
     return found if isinstance(found, LayDownModel) else None
 
 

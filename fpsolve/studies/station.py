@@ -113,7 +113,9 @@ class Station:
             name,
             outcome,
             difference=math.sqrt(excess / self.n_paths),
-            step_error=self._with_bias(self.reference.distance),
+            step_error=self._with_bias(
+                self.reference.distance, self.reference.half_step_distance
+            ),
         )
 
     def _test_of_moment(self, name: str) -> AgreementTest:
@@ -123,14 +125,16 @@ class Station:
             name,
             z_score(value, expected, error, self.size),
             difference=value - expected,
-            step_error=self._with_bias(self.reference.errors[name]),
+            step_error=self._with_bias(
+                self.reference.errors[name], self.reference.half_step_errors[name]
+            ),
             density=expected,
             paths=value,
             standard_error=error,
         )
 
-    def _with_bias(self, error: float) -> float:
-        return error * (1.0 + self.bias_factor)
+    def _with_bias(self, error: float, half_step: float) -> float:
+        return error + half_step * self.bias_factor
 
     def _row(self, name: str, outcome: Outcome, **more: Any) -> AgreementTest:
         return AgreementTest(
