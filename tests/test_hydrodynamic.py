@@ -96,6 +96,18 @@ def test_the_steady_state_is_the_gibbs_density_at_the_centres(limit):
     assert steady.residual < 100 * EPS * 20
 
 
+@pytest.mark.parametrize("half_width", [3.5, 5.0])
+def test_its_error_on_the_plane_covers_box_and_cells(limit, half_width):
+    grid = PlaneGrid(half_width, (20, 20))
+    steady = limit.steady_state(grid, boundary_tolerance=1.0)
+    exact = limit.equilibrium(*grid.mesh())
+    inside = np.abs(steady.density - exact).sum() * grid.cell_area
+    fine = PlaneGrid(half_width, (200, 200))
+    outside = 1 - limit.equilibrium(*fine.mesh()).sum() * fine.cell_area
+    assert 0 < inside + outside <= steady.error + 100 * EPS
+    assert f"L1 error {steady.error:.1g}" in repr(steady)
+
+
 def test_the_stationary_vector_of_the_matrix_is_that_density(limit):
     # An independent way: the null vector of Q by a dense decomposition.
     grid = PlaneGrid((4.0, 3.0), (16, 12))

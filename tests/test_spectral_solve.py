@@ -20,6 +20,7 @@ from fpsolve.spectral.steady import (
     Unknowns,
     forward_matrix,
     spectral_steady_state,
+    stationary,
     truncation_limits,
 )
 
@@ -304,8 +305,31 @@ def test_the_stationary_mean_direction_is_minus_the_belt_speed(noise, speed, sig
 def test_the_stationary_shift_of_strong_noise_is_a_squared_v():
     # Statement 5: ⟨ξ₁⟩ = A²k/2 with I₁(k)/I₀(k) = v, up to 1/A² of itself.
     model = fp.LayDownModel(fp.QuadraticPotential(), 8.0, fp.MovingBelt(0.1))
-    shift = spectral_steady_state(model).moments["mean_xi1"]
-    assert shift == pytest.approx(64 * 0.2010 / 2, rel=3 / 64)
+    found = spectral_steady_state(model)
+    assert found.moments["mean_xi1"] == pytest.approx(64 * 0.2010 / 2, rel=3 / 64)
+    # The first coefficients are exact, but h = e^{6.4 ξ₁} has its largest beyond the
+    # truncation: of the density nothing is known.
+    grid = fp.PhaseSpaceGrid((13.0, 5.0), (40, 16, 8))
+    assert found.density_error(grid) > 1
+    with pytest.raises(ToleranceError, match="or use `steady_state`"):
+        found.density(grid)
+
+
+def stationary_density(model, degree, grid):
+    expansion = stationary(model, truncation_limits(degree))
+    return quadrature.density_on(expansion, grid, model.potential)
+
+
+def test_the_density_states_an_error_that_covers():
+    model = fp.LayDownModel(fp.QuadraticPotential(), 2.0, fp.MovingBelt(0.3))
+    grid = fp.PhaseSpaceGrid(6.0, (24, 24, 16))
+    coarse = spectral_steady_state(model, tolerance=1e-3)
+    exact = stationary_density(model, 53, grid)
+    error = fp.diagnostics.l1_distance(coarse.density(grid), exact, grid)
+    assert coarse.truncation[0] == 31
+    assert 1e-9 < error < coarse.density_error(grid)
+    with pytest.raises(ToleranceError, match="tolerance 1e-10 not reached"):
+        coarse.density(grid, tolerance=1e-10)
 
 
 def test_the_steady_state_is_the_grid_solvers():

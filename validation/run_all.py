@@ -17,6 +17,7 @@ SCRIPTS = (
     "path_marginals.py",
     "ergodic_averages.py",
     "spectral_reference.py",
+    "stationary_densities.py",
     "decay_rate_is_the_gap.py",
     "rate_asymptotes.py",
     "large_noise_limit.py",

@@ -59,6 +59,7 @@ class SpectralSteadyState:
     residual: float
     truncation: tuple[int, int]
     _expansion: Expansion
+    _coarser: Expansion
 
     def __repr__(self) -> str:
         mean = f"({self.moments['mean_xi1']:.6g}, {self.moments['mean_xi2']:.6g})"
@@ -68,9 +69,40 @@ class SpectralSteadyState:
             f"{self.truncation[0]}, harmonics {self.truncation[1]})"
         )
 
-    def density(self, grid: PhaseSpaceGrid) -> Array:
-        """p(ξ, α) at the cell centres of a grid; shape ``grid.shape``."""
-        return quadrature.density_on(self._expansion, grid, quadratic(self.model))
+    def density(self, grid: PhaseSpaceGrid, *, tolerance: float = 1e-2) -> Array:
+        """p(ξ, α) at the cell centres of a grid; shape ``grid.shape``.
+
+        Moments need the first coefficients only, the density all of them: where the
+        belt has moved it far from e^{−B}, the moments are exact and the density is not
+        known at all.
+
+        Raises
+        ------
+        ToleranceError
+            If `density_error` is above `tolerance`.
+        """
+        tolerance = checked_tolerance(tolerance)
+        p, error = self._density_and_error(grid)
+        if not error <= tolerance:
+            remedy = (
+                "lower the `tolerance` of `spectral_steady_state`, which raises the "
+                "truncation, or use `steady_state`"
+            )
+            raise ToleranceError(error, tolerance, remedy)
+        return p
+
+    def density_error(self, grid: PhaseSpaceGrid) -> float:
+        """∫ |p − p′| dξ dα on a grid, p′ from the next coarser truncation."""
+        return self._density_and_error(grid)[1]
+
+    def _density_and_error(self, grid: PhaseSpaceGrid) -> tuple[Array, float]:
+        potential = quadratic(self.model)
+        p, q = (
+            quadrature.density_on(one, grid, potential)
+            for one in (self._expansion, self._coarser)
+        )
+        error = float(np.abs(p - q).sum()) * grid.cell_volume
+        return p, error + ROUNDING
 
 
 @one_blas_thread()
@@ -256,7 +288,9 @@ def compared(
     }
     residual = residual_norm(model, fine)
     truncation = fine.degree, fine.harmonics
-    return SpectralSteadyState(model, moments, errors, residual, truncation, fine)
+    return SpectralSteadyState(
+        model, moments, errors, residual, truncation, fine, coarse
+    )
 
 
 def residual_norm(model: LayDownModel, h: Expansion) -> float:

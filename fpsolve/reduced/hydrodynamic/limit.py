@@ -33,6 +33,7 @@ __all__ = ["HydrodynamicLimit"]
 
 Array = NDArray[np.float64]
 Start = ArrayLike | Callable[..., ArrayLike]
+ROUNDING = 1e-15
 
 
 class HydrodynamicLimit:
@@ -107,7 +108,8 @@ class HydrodynamicLimit:
     ) -> HydrodynamicSteadyState:
         """𝒫_S on a grid: the stationary density of the discrete equation, exactly.
 
-        It is known in closed form; what is computed is its residual.
+        It is known in closed form; what is computed is its residual, and its error as
+        a density on the plane.
 
         Raises
         ------
@@ -123,7 +125,19 @@ class HydrodynamicLimit:
             raise DomainTooSmallError(
                 share, plane.half_width, tolerance=boundary_tolerance
             )
-        return HydrodynamicSteadyState(masses / plane.cell_area, residual, share, plane)
+        density = masses / plane.cell_area
+        error = self._stationary_error(plane)
+        return HydrodynamicSteadyState(density, residual, share, plane, error)
+
+    def _stationary_error(self, plane: PlaneGrid) -> float:
+        """∫ |𝒫 − 𝒫_S| of exp(−Φ) at the centres, normalised on the grid."""
+        n1, n2 = plane.shape
+        twice = PlaneGrid(plane.half_width, (2 * n1, 2 * n2))
+        here, finer = (
+            float(self.equilibrium(*one.mesh()).sum()) * one.cell_area
+            for one in (plane, twice)
+        )
+        return 2.0 * abs(1.0 - finer) + 2.0 * abs(here - finer) + ROUNDING
 
     @one_blas_thread()
     def solve(

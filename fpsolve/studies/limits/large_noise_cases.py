@@ -40,6 +40,8 @@ _DEVIATIONS = 5.5
 _COARSER, _LONGER = 0.75, 1.5
 # Relative accuracy of spectral gaps.
 _GAP_TOLERANCE = 1e-11
+# No two densities are further apart in L1.
+_ANY_ERROR = 2.0
 # Largest p0/p_S that is evolved as such.
 _CONTRAST = 1e4
 Array = NDArray[np.float64]
@@ -185,13 +187,11 @@ def stationary_case(
 
 
 def _stationary(model: LayDownModel, resolution: Resolution) -> Numbers:
-    quadratic = isinstance(model.potential, QuadraticPotential)
-    # Where B is steep, e^{−B} spans too much for p/p_S to be told from noise.
-    scheme = drift_kick(model, resolution.grid, balanced=quadratic)
     found = steady_state(
-        # A residual r leaves an error of about r over the gap, which is ~ ε.
-        scheme, ds=resolution.ds(model.noise), extrapolate=True,
-        tolerance=2e-6 * model.noise**-2,
+        # A residual r leaves an error of about r over the gap, which is ~ ε. That of
+        # the whole is told by the coarser resolution, distance by distance.
+        model, resolution.grid, ds=resolution.ds(model.noise), extrapolate=True,
+        tolerance=2e-6 * model.noise**-2, error_tolerance=_ANY_ERROR,
     )  # fmt: skip
     limit = stationary_limit(model, resolution.grid)
     numbers = distances(found.density, limit, resolution.grid, model)
