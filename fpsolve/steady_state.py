@@ -9,15 +9,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import i0e, i1e
 
 from fpsolve import diagnostics
 from fpsolve._blas import one_blas_thread
-from fpsolve._checks import check_flag, check_real, check_tolerance
+from fpsolve._checks import check_flag, check_tolerance
 from fpsolve.errors import DomainTooSmallError, ToleranceError
 from fpsolve.grids import PhaseSpaceGrid, check_grid
 from fpsolve.models import LayDownModel
-from fpsolve.potentials import LinearPotential
 from fpsolve.schemes import DriftKick, drift_kick
 from fpsolve.solve import Scheme, checked_scheme
 from fpsolve.stationary.at_rest import at_rest
@@ -33,6 +31,7 @@ from fpsolve.stationary.iteration import Stationary, settled, stationary
 from fpsolve.stationary.other_schemes import judged, own_density
 from fpsolve.stationary.refinement import Refined, refined
 from fpsolve.stationary.remedies import remedy
+from fpsolve.stationary.requirements import check_stationary, checked_step
 from fpsolve.stationary.result import SteadyState
 from fpsolve.suggestions import suggest_step
 
@@ -40,8 +39,6 @@ __all__ = ["SteadyState", "steady_state"]
 
 Array = NDArray[np.float64]
 
-# A stride of more steps than this would never end.
-SHORTEST = 1e-9
 # High order costs next to nothing beside the angle step.
 INTERPOLATION_ORDER = 12
 # Error of one run at the first step, before three step lengths are combined; and
@@ -185,19 +182,6 @@ def first_step(scheme: Scheme) -> float:
     return min(ds, 1.0 / math.ceil(1.0 / turn))
 
 
-def checked_step(ds: float) -> float:
-    """The step as a float, positive and not so short that no unit of s is reached."""
-    ds = check_real("ds", ds)
-    if not (math.isfinite(ds) and ds > 0):
-        raise ValueError(f"`ds` must be positive, got {ds:g}.")
-    if not ds >= SHORTEST:
-        raise ValueError(
-            f"`ds` must be at least {SHORTEST:g}, got {ds:g}; one evaluation goes over "
-            "about a unit of arclength."
-        )
-    return ds
-
-
 def scheme_for(model: LayDownModel | Scheme, grid: PhaseSpaceGrid | None) -> Scheme:
     """The scheme to iterate, checked."""
     if isinstance(model, LayDownModel):
@@ -218,43 +202,6 @@ def scheme_for(model: LayDownModel | Scheme, grid: PhaseSpaceGrid | None) -> Sch
                 f"`scheme` must be linear, got one with {option}=True; leave it out."
             )
     return model
-
-
-def check_stationary(model: LayDownModel) -> None:
-    """Raise ValueError if the model has no stationary density."""
-    if not model.curve.autonomous:
-        raise ValueError(
-            f"`curve` must move at constant speed, got {model.curve!r}; under a "
-            "rotating or oscillating nozzle the density never comes to rest."
-        )
-    if not model.potential.normalisable:
-        raise ValueError(
-            f"`potential` must confine, got {model.potential!r}: exp(-B) has no "
-            "finite integral."
-        )
-    if not model.noise > 0:
-        raise ValueError(
-            "`noise` must be positive, got 0; without noise there are many stationary "
-            "densities on a fixed belt, `initial.equilibrium` among them, and none is "
-            "reached on a moving one."
-        )
-    if model.curve.fixed:
-        return
-    check_linear_strength(model)
-
-
-def check_linear_strength(model: LayDownModel) -> None:
-    """Raise unless v < I₁(2K/A²)/I₀(2K/A²), which |ξ| buckling needs to hold on."""
-    if not isinstance(model.potential, LinearPotential):
-        return
-    strength = 2.0 * model.potential.slope / model.noise**2
-    largest = float(i1e(strength) / i0e(strength))
-    if not abs(model.belt_speed) < largest:
-        raise ValueError(
-            f"`speed` must be below I1(2K/A²)/I0(2K/A²) = {largest:.4g} for the linear "
-            f"potential with K = {model.potential.slope:g} and A = {model.noise:g}, "
-            f"got {model.belt_speed:g}; the fibre is otherwise carried away."
-        )
 
 
 def with_errors(scheme: Scheme, found: Refined, extrapolated: bool) -> SteadyState:

@@ -9,6 +9,7 @@ import pytest
 import fpsolve as fp
 from fpsolve.errors import ToleranceError
 from fpsolve.stationary.coarser import carried, coarser_grid
+from fpsolve.stationary.requirements import check_stationary
 
 GRID = fp.PhaseSpaceGrid(5.5, (44, 44, 32))
 
@@ -224,9 +225,16 @@ def test_without_noise_speed_or_confinement_there_is_no_stationary_density():
 
 def test_a_weak_linear_potential_loses_the_fibre_to_the_belt():
     # I1(2/9)/I0(2/9) = 0.1104 for A = 3: a belt at 0.2 is too fast.
-    weak = moving(noise=3.0, speed=0.2, potential=fp.LinearPotential())
-    with pytest.raises(ValueError, match=r"`speed` must be below .* = 0\.1104 for the"):
-        fp.steady_state(weak, GRID)
+    aside = fp.CallablePotential(
+        lambda x, y: np.hypot(x - 1, y),
+        lambda x, y: ((x - 1) / np.hypot(x - 1, y), y / np.hypot(x - 1, y)),
+    )
+    for potential in (fp.LinearPotential(), fp.PowerPotential(1.0), aside):
+        weak = moving(noise=3.0, speed=0.2, potential=potential)
+        with pytest.raises(ValueError, match=r"`speed` must be below .* = 0\.1104 for"):
+            fp.steady_state(weak, GRID)
+    # Where B grows faster, every belt is held.
+    check_stationary(moving(noise=3.0, speed=0.9, potential=fp.PowerPotential(1.5)))
 
 
 def test_arguments_that_cannot_work_are_named():
