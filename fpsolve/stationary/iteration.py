@@ -121,6 +121,8 @@ def stationary(
     before = np.inf
     for _ in range(MOST_CORRECTIONS):
         defect = strides.answer(images) - p
+        if not size_of(defect, scheme) < np.inf:
+            raise SteadyStateError(np.nan, ITERATION_SHARE * goal)
         correction = correct(defect, CORRECTION)
         p = p + correction
         p /= diagnostics.mass(p, scheme.grid)
