@@ -21,6 +21,7 @@ import numpy as np
 from reporting import Report, restricted
 
 import fpsolve as fp
+from fpsolve.errors import ToleranceError
 from fpsolve.stationary.start import concentration_of
 
 DEFAULT = 1e-4
@@ -145,7 +146,7 @@ class References:
             found = fp.spectral_steady_state(
                 case.model, tolerance=1e-7, memory_limit=2**29
             )
-        except fp.ToleranceError:
+        except ToleranceError:
             return None
         return (found,)
 
@@ -173,7 +174,7 @@ def measured(case: Case, references: References) -> dict[str, object] | None:
         return None
     row: dict[str, object] = {
         "B": case.shape.name, "A": case.noise, "v": case.speed,
-        "grid": "x".join(map(str, grid.shape)),
+        "cells": "x".join(map(str, grid.shape)),
     }  # fmt: skip
     began = time.process_time()
     with warnings.catch_warnings():

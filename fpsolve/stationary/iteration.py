@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from fpsolve import diagnostics
 from fpsolve.errors import SteadyStateError
 from fpsolve.schemes import DriftKick
+from fpsolve.stationary.acceleration import Acceleration
 from fpsolve.stationary.correction import Correction
 from fpsolve.stationary.evolution import Strides
 
@@ -118,13 +119,13 @@ def stationary(
     p = start / diagnostics.mass(start, scheme.grid)
     images = strides(p)
     correct = Correction(strides.longest, p, images[0])
-    before = np.inf
+    accelerate, before = Acceleration(), np.inf
     for _ in range(MOST_CORRECTIONS):
         defect = strides.answer(images) - p
         if not size_of(defect, scheme) < np.inf:
             raise SteadyStateError(np.nan, ITERATION_SHARE * goal)
         correction = correct(defect, CORRECTION)
-        p = p + correction
+        p = accelerate(p, correction)
         p /= diagnostics.mass(p, scheme.grid)
         size = size_of(correction, scheme)
         share = left_share(size, before, size_of(defect, scheme), correct.amplification)
