@@ -57,11 +57,11 @@ def test_the_residual_is_that_of_the_scheme_it_is_asked_about():
 
 def test_the_iteration_reaches_the_residual_it_states(on_the_belt):
     assert on_the_belt.residual <= 1e-9
-    scheme = fp.drift_kick(moving(), GRID)
-    with pytest.warns(UserWarning, match="L1 error"):
-        finer = fp.steady_state(scheme, ds=0.05)
+    grid = fp.PhaseSpaceGrid(5.5, (28, 28, 16))
+    scheme = fp.drift_kick(moving(), grid)
+    finer = fp.steady_state(scheme, ds=0.05, error_tolerance=0.1)
     solution = fp.solve(scheme, finer.density, (0.0, 2.0), 0.05, record_every=20)
-    change = fp.diagnostics.l1_distance(solution.final, finer.density, GRID)
+    change = fp.diagnostics.l1_distance(solution.final, finer.density, grid)
     # Twice the stride of one at 1e-9 each, and as much again for the records.
     assert change < 5e-9
 
@@ -112,13 +112,12 @@ def test_the_tolerance_is_met_by_default_where_the_grid_allows_it(fast):
 def test_steps_are_shortened_as_far_as_the_tolerance_asks(fast):
     model, _ = fast
     grid = fp.PhaseSpaceGrid(6.5, (24, 24, 16))
-    with pytest.warns(UserWarning, match="L1 error"):
-        plain = fp.steady_state(model, grid)
+    plain = fp.steady_state(model, grid, error_tolerance=0.05, tolerance=1e-6)
     with pytest.warns(UserWarning, match="L1 error"):
         finer = fp.steady_state(model, grid, error_tolerance=1e-5, tolerance=1e-6)
     assert finer.ds < plain.ds
     # A fifth of the tolerance belongs to the step.
-    assert finer.errors["step"] < 2e-6 < plain.errors["step"] < 2e-5
+    assert finer.errors["step"] < 2e-6 < plain.errors["step"]
 
 
 def test_a_single_step_states_how_far_it_is_from_shorter_ones(fast):
@@ -171,12 +170,11 @@ def test_what_resolves_nothing_is_refused():
 
 
 def test_a_scheme_of_ones_own_comes_with_its_error_too():
-    grid = fp.PhaseSpaceGrid(5.0, (24, 24, 16))
+    grid = fp.PhaseSpaceGrid(5.0, (20, 20, 12))
     scheme = fp.semi_lagrangian(moving(), grid, interpolation_order=6)
-    with pytest.warns(UserWarning, match="L1 error"):
-        own = fp.steady_state(scheme, tolerance=1e-6)
+    own = fp.steady_state(scheme, tolerance=1e-5, error_tolerance=0.1)
     exact = fp.spectral_steady_state(moving(), tolerance=1e-8)
-    assert apart(own, exact) < own.error < 0.1
+    assert 1e-4 < apart(own, exact) < own.error < 0.1
 
 
 def test_on_a_fixed_belt_the_error_is_what_the_box_leaves_out():
