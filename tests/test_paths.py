@@ -145,6 +145,47 @@ def test_a_continued_run_equals_an_uninterrupted_one_bitwise(curve):
     assert np.array_equal(second.replay(11).xi[-1], whole.xi[-1, 11])
 
 
+@pytest.mark.parametrize("s_start", [0.0, -0.3])
+def test_paths_that_went_on_report_what_uninterrupted_ones_do(tmp_path, s_start):
+    model = fp.LayDownModel(fp.PowerPotential(4.0), 0.8, fp.RotatingNozzle(0.1, 0.8, 1))
+    grid = fp.PhaseSpaceGrid(3.0, (8, 6, 4))
+    options = {"seed": 3, "s_start": s_start, "histogram": grid}
+    saves = (s_start + 1.1, s_start + 2.0)
+    first = fp.sample_paths(model, 100, s_start + 0.7, 0.1, **options)
+    again = first.continued(s_start + 0.9).continued(saves[-1], save_at=saves)
+    whole = fp.sample_paths(model, 100, saves[-1], 0.1, save_at=saves, **options)
+    assert again.ensemble == whole.ensemble
+    for name in ("s", "states", "sums", "counts", "outside", "start", "end"):
+        assert np.array_equal(getattr(again, name), getattr(whole, name)), name
+    assert again.provenance["n_steps"] == whole.provenance["n_steps"]
+    functions = [lambda xi1, xi2, alpha: xi1, lambda xi1, xi2, alpha: np.cos(alpha)]
+    averages = whole.time_averages(functions)
+    assert np.array_equal(again.time_averages(functions), averages)
+    assert np.array_equal(again.replay(7, every=3).xi, whole.replay(7, every=3).xi)
+    assert np.array_equal(again.replay(7, every=3).s, whole.replay(7, every=3).s)
+    loaded = fp.load(again.save(tmp_path / "paths.nc"))
+    assert np.array_equal(loaded.time_averages(functions), averages)
+    assert np.array_equal(loaded.histogram(grid, saves[0]).counts, whole.counts[0])
+    assert np.array_equal(fp.rerun(again).counts, whole.counts)
+
+
+def test_what_an_interrupt_leaves_of_paths_that_went_on_begins_at_the_start(
+    model, small_batches
+):
+    def stop(n_done, n_total, s):
+        if n_done > 8192 * 10:
+            raise KeyboardInterrupt
+
+    first = fp.sample_paths(model, 10_000, 1.0, 0.1, seed=3)
+    with pytest.raises(RunInterrupted) as caught:
+        first.continued(2.0, progress=stop)
+    whole = fp.sample_paths(model, 8192, 2.0, 0.1, seed=3)
+    partial = caught.value.solution
+    for name in ("s", "states", "sums", "start", "end"):
+        assert np.array_equal(getattr(partial, name), getattr(whole, name)), name
+    assert np.array_equal(partial.replay(8000).xi, whole.replay(8000).xi)
+
+
 def test_where_paths_are_saved_does_not_change_them(model):
     rarely = fp.sample_paths(model, 50, 2.0, 0.1, seed=3)
     often = fp.sample_paths(model, 50, 2.0, 0.1, seed=3, save_at=np.arange(21) / 10)

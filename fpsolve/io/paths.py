@@ -43,7 +43,6 @@ _NEEDED_ATTRIBUTES = (
     "ds",
     "s_start",
     "n_steps",
-    "first_step",
     "saved_steps",
     "kept",
     "status",
@@ -121,7 +120,7 @@ def from_xarray(dataset: xr.Dataset) -> Paths:
         sums=dataset["moment_sums"].values,
         counts=counts,
         outside=outside,
-        start=_read_states(dataset, "start_", ensemble.keep),
+        start=_read_start(dataset, ensemble),
         end=_read_states(dataset, "end_", ensemble.keep),
         status=str(attributes["status"]),
         message=str(attributes["message"]),
@@ -245,7 +244,6 @@ def _attributes(paths: Paths) -> dict[str, Any]:
         "ds": schedule.ds,
         "s_start": schedule.start,
         "n_steps": schedule.n_steps,
-        "first_step": ensemble.first_step,
         "saved_steps": to_json(schedule.saves),
         "kept": int(ensemble.keep),
         **({} if grid is None else {"grid": to_json(grid.to_dict())}),
@@ -272,7 +270,6 @@ def _read_ensemble(dataset: xr.Dataset, provenance: dict[str, Any]) -> Ensemble:
             if "grid" in attributes
             else None
         ),
-        first_step=int(attributes["first_step"]),
     )
 
 
@@ -298,6 +295,19 @@ def _read_states(dataset: xr.Dataset, prefix: str, kept: bool) -> Array:
     states[..., 2:4, :] = np.swapaxes(tau, -1, -2)
     states[..., 4, :] = turns
     return states
+
+
+def _read_start(dataset: xr.Dataset, ensemble: Ensemble) -> Array:
+    """States at step 0; older files of paths that went on have others, and say so."""
+    if not dataset.attrs.get("first_step", 0):
+        return _read_states(dataset, "start_", ensemble.keep)
+    if ensemble.law is None:
+        raise ValueError(
+            "paths that went on from others must be known from their start, got a file "
+            "of an older version and a law of the start that cannot be read back; "
+            "sample them again."
+        )
+    return ensemble.initial_state(0, ensemble.n_paths)
 
 
 def _read_counts(dataset: xr.Dataset) -> tuple[NDArray[np.int64], NDArray[np.int64]]:

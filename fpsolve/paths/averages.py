@@ -63,9 +63,7 @@ def group_averages(
     paths: Paths, functions: Sequence[Observable], first: int, n: int
 ) -> Array:
     """The averages of a group of paths; shape (n_functions, n_saved, n)."""
-    ensemble = paths.ensemble
-    begin = ensemble.first_step
-    saves = ensemble.schedule.saves
+    saves = paths.ensemble.schedule.saves
     averages = np.full((len(functions), len(saves), n), np.nan)
     # Sums over all steps so far; the ends of the trapezoidal rule count one half.
     sums, starts = np.zeros((2, len(functions), n))
@@ -74,12 +72,12 @@ def group_averages(
         inside = [at for at, stop in enumerate(saves) if 0 <= stop - step < len(states)]
         for row, f in enumerate(functions):
             values = observed(f, xi1, xi2, alpha)
-            if step == begin:
+            if step == 0:
                 starts[row] = values[0]
             for at in inside:
                 ends = 0.5 * (starts[row] + values[saves[at] - step])
                 here = sums[row] + values[: saves[at] - step + 1].sum(axis=0) - ends
-                if saves[at] > begin:
-                    averages[row, at] = here / (saves[at] - begin)
+                if saves[at] > 0:
+                    averages[row, at] = here / saves[at]
             sums[row] += values.sum(axis=0)
     return averages

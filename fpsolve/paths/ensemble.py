@@ -44,7 +44,8 @@ class Ensemble:
     grid : PhaseSpaceGrid or None
         Grid of the histograms.
     first_step : int
-        Step at which the paths begin; positive for paths that go on.
+        Step from which on they are computed; positive while paths go on, and zero in
+        every result.
     """
 
     model: Any

@@ -254,6 +254,10 @@ class Paths:
     ) -> Paths:
         """The same paths on to `s_end`, bitwise as if they had never stopped.
 
+        The result is what one call of `sample_paths` from the start to `s_end` gives,
+        histograms, moments and averages along paths included; what was saved before
+        stays with these paths.
+
         Parameters
         ----------
         s_end : float
@@ -267,6 +271,8 @@ class Paths:
         ValueError
             If `s_end` is not beyond the end, an arclength to save at is not on the way,
             or if the states were not kept.
+        MemoryLimitError
+            If the result would not fit into memory.
         """
         from fpsolve.paths.sampling import go_on
 

@@ -39,6 +39,7 @@ __all__ = ["go_on", "sample_paths"]
 
 Array = NDArray[np.float64]
 NOTHING = np.zeros(0, dtype=np.int64)
+CLOCKS = ("wall", "cpu")
 
 
 def sample_paths(
@@ -161,28 +162,36 @@ def go_on(
             f"`save_at` must lie beyond the end {reached:g} of the paths, got "
             f"{schedule.s(schedule.saves[0]):g}."
         )
-    ensemble = replace(
-        paths.ensemble, schedule=schedule, first_step=before.n_steps, grid=None
-    )
-    return completed(ensemble, paths.end, None, progress)
+    ensemble = replace(paths.ensemble, schedule=schedule, first_step=before.n_steps)
+    check_memory(required_memory(ensemble), None, "save less often")
+    return completed(ensemble, paths, None, progress)
 
 
 def completed(
-    ensemble: Ensemble, states: Array | None, client: Any, progress: Any
+    ensemble: Ensemble, before: Paths | None, client: Any, progress: Any
 ) -> Paths:
-    """Run all batches, here or on a client, and gather them."""
+    """Run all batches, here or on a client, and gather them.
+
+    Paths that go on from others become one with them: they begin where those began.
+    """
     watch = Stopwatch()
+    states = None
+    if before is not None:
+        states = before.end
+        spent = (before.provenance.get(f"{kind}_seconds", 0.0) for kind in CLOCKS)
+        watch.add(*spent)
     n_steps = ensemble.schedule.n_steps - ensemble.first_step
     n_total = ensemble.n_paths * n_steps
     with reporting(progress) as report, announced_compilation(bool(progress)):
         meter = Meter(report, n_total, ensemble.schedule)
         batches: list[Batch] = []
-        with keeping_what_is_done(ensemble, batches, watch):
+        with keeping_what_is_done(ensemble, before, batches, watch):
             if client is None:
                 run_here(ensemble, states, meter, batches)
             else:
                 run_elsewhere(ensemble, states, meter, batches, client)
-    return gathered(ensemble, batches, watch.provenance(n_total))
+    n_total = ensemble.n_paths * ensemble.schedule.n_steps
+    return gathered(ensemble, before, batches, watch.provenance(n_total))
 
 
 class Meter:
@@ -262,23 +271,26 @@ def part(states: Array | None, first: int, n: int) -> Array | None:
 
 @contextmanager
 def keeping_what_is_done(
-    ensemble: Ensemble, batches: list[Batch], watch: Stopwatch
+    ensemble: Ensemble, before: Paths | None, batches: list[Batch], watch: Stopwatch
 ) -> Iterator[None]:
     """Attach the finished batches to what stops the others."""
     try:
         yield
     except KeyboardInterrupt:
-        message = "stopped by the user"
-        done = finished_part(ensemble, batches, watch, message) if batches else None
+        done = None
+        if batches:
+            done = finished_part(ensemble, before, batches, watch)
+            done = replace(done, message="stopped by the user")
         raise RunInterrupted(done) from None
     except NonFinitePathError as error:
         if batches:
-            error.solution = finished_part(ensemble, batches, watch, str(error))
+            done = finished_part(ensemble, before, batches, watch)
+            error.solution = replace(done, message=str(error))
         raise
 
 
 def finished_part(
-    ensemble: Ensemble, batches: list[Batch], watch: Stopwatch, message: str
+    ensemble: Ensemble, before: Paths | None, batches: list[Batch], watch: Stopwatch
 ) -> Paths:
     """The paths of the batches that are there, to where they came."""
     n_paths, reached = sum(batch.n for batch in batches), batches[0].step
@@ -287,30 +299,34 @@ def finished_part(
     fewer = replace(ensemble, n_paths=n_paths, schedule=schedule)
     asked = ensemble.schedule
     provenance = {
-        **watch.provenance(n_paths * (reached - ensemble.first_step)),
+        **watch.provenance(n_paths * reached),
         "asked": {
             "n_paths": ensemble.n_paths, "n_steps": asked.n_steps,
             "saves": list(asked.saves),
         },
     }  # fmt: skip
-    return replace(
-        gathered(fewer, batches, provenance), status="interrupted", message=message
-    )
+    return replace(gathered(fewer, before, batches, provenance), status="interrupted")
 
 
 def gathered(
-    ensemble: Ensemble, batches: list[Batch], provenance: dict[str, Any]
+    ensemble: Ensemble,
+    before: Paths | None,
+    batches: list[Batch],
+    provenance: dict[str, Any],
 ) -> Paths:
-    """The paths of all batches as one result."""
+    """The paths of all batches as one result, from where `before` began."""
     schedule = ensemble.schedule
+    start = np.concatenate([batch.start for batch in batches], axis=1)
+    if before is not None:
+        start = before.start[:, : ensemble.n_paths]
     return Paths(
-        ensemble=ensemble,
+        ensemble=replace(ensemble, first_step=0),
         s=np.array([schedule.s(step) for step in schedule.saves]),
         states=np.concatenate([batch.states for batch in batches], axis=2),
         sums=np.sum([batch.sums for batch in batches], axis=0),
         counts=batches[0].counts,
         outside=batches[0].outside,
-        start=np.concatenate([batch.start for batch in batches], axis=1),
+        start=start,
         end=np.concatenate([batch.end for batch in batches], axis=1),
         provenance=provenance,
     )

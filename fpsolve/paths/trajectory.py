@@ -56,7 +56,7 @@ def traced(paths: Paths, first: int, n: int) -> Iterator[tuple[int, Array]]:
     """
     paths.check_model()
     ensemble, state = paths.ensemble, paths.states_at_start(first, n)
-    step, end = ensemble.first_step, ensemble.schedule.n_steps
+    step, end = 0, ensemble.schedule.n_steps
     yield step, state[None].copy()
     while step < end:
         n_steps = min(LEG, end - step)
@@ -83,10 +83,9 @@ def _warn_unless_equal(state: Array, sampled: Array) -> None:
 def trajectory(paths: Paths, k: int, every: int) -> Trajectory:
     """Path k at its start and after every few steps, its last one included."""
     schedule = paths.ensemble.schedule
-    first = paths.ensemble.first_step
     states = np.concatenate([states for _, states in traced(paths, k, 1)])
-    steps = np.arange(first, schedule.n_steps + 1)
-    chosen = (steps - first) % every == 0
+    steps = np.arange(schedule.n_steps + 1)
+    chosen = steps % every == 0
     chosen[-1] = True
     states = states[chosen]
     return Trajectory(

@@ -5,10 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from fpsolve.errors import NotRepeatableError
 from fpsolve.paths import Paths, sample_paths
 from fpsolve.paths.ensemble import GivenStart
-from fpsolve.paths.sampling import completed
 from fpsolve.rerunning.missing import own_code
 
 __all__ = ["repeat_paths"]
@@ -17,15 +15,12 @@ NOTES = ("configuration",)
 
 
 def repeat_paths(paths: Paths, overrides: dict[str, Any]) -> Paths:
-    """Call `sample_paths` as it was called, or go on from the same start as before."""
+    """Call `sample_paths` as it was called, or once for paths that went on."""
     given = dict(overrides)
     model = given.pop("model", paths.ensemble.model)
     if model is None:
         raise own_code("model", paths.provenance.get("model_description", ""))
-    if paths.ensemble.first_step:
-        new = _continued(paths, model, given)
-    else:
-        new = sample_paths(model, **{**_arguments(paths, "initial" in given), **given})
+    new = sample_paths(model, **{**_arguments(paths, "initial" in given), **given})
     if given.keys() - {"progress", "client"}:
         return new
     notes = {name: paths.provenance[name] for name in NOTES
@@ -55,20 +50,3 @@ def _arguments(paths: Paths, has_start: bool) -> dict[str, Any]:
         "histogram": ensemble.grid,
         "keep": ensemble.keep,
     }
-
-
-def _continued(paths: Paths, model: Any, given: dict[str, Any]) -> Paths:
-    """Paths that went on from others start where those ended."""
-    client, progress = given.pop("client", None), given.pop("progress", False)
-    if given:
-        raise NotRepeatableError(
-            f"`{next(iter(given))}` must not be changed for paths that went on from "
-            "others; repeat those, then go on."
-        )
-    ensemble, asked = paths.ensemble, paths.provenance.get("asked")
-    if asked is not None:
-        schedule = replace(
-            ensemble.schedule, n_steps=asked["n_steps"], saves=tuple(asked["saves"])
-        )
-        ensemble = replace(ensemble, schedule=schedule)
-    return completed(replace(ensemble, model=model), paths.start, client, progress)
