@@ -221,6 +221,16 @@ def test_a_spurious_pair_whose_frequency_grows_with_the_basis_is_left_out():
 # ---------------------------------------------------------------- results
 
 
+@pytest.mark.parametrize("degree", [12, 13])
+def test_no_eigenvalue_of_the_truncation_alone_is_reported(degree):
+    # With k = 1 and the highest degree there is one at −A²/2, in the same sectors in
+    # every truncation of one parity: it stands still, and would be taken for the gap.
+    model = fp.LayDownModel(fp.QuadraticPotential(1.0, 0.7), 0.3)
+    basis, scale = TensorDiscretisation(1.0, 0.7, 0.3), Scale.of(model, None)
+    found = survey(basis, Truncation(degree, 8), 2, scale)
+    assert min(abs(mode.eigenvalue + 0.3**2 / 2) for mode in found) > 0.1 * 0.045
+
+
 def test_errors_bound_the_distance_to_a_finer_computation():
     for noise in (0.7, 1.0, 1.3):
         rough = spectrum(quadratic(noise), 4, tolerance=1e-5)

@@ -184,6 +184,7 @@ class Search:
         scale: Scale,
     ) -> None:
         self.sector, self.truncation, self.scale = sector, truncation, scale
+        self.on_edge = getattr(discretisation, "on_edge", None)
         self.matrix: csc_array = discretisation.matrix(sector, *truncation)
         self.modes: list[Mode] = []
 
@@ -236,6 +237,12 @@ class Search:
                 return math.sqrt(radius**2 - reach**2)
             n_nearest *= 2
 
+    def spurious(self, vector: NDArray[np.complex128]) -> bool:
+        """Whether an eigenvector belongs to the truncation and not to L."""
+        if self.on_edge is None:
+            return False
+        return bool(self.on_edge(vector, self.sector, self.truncation))
+
     def add(
         self,
         values: NDArray[np.complex128],
@@ -251,6 +258,8 @@ class Search:
         if known.size:
             new &= np.abs(values[:, None] - known).min(axis=1) > tiny
         for i in np.flatnonzero(new):
+            if self.spurious(vectors[:, i]):
+                continue
             # -0.0 would print as a conjugate.
             value = complex(values[i].real, abs(values[i].imag))
             partner = neighbour(values, i)

@@ -17,6 +17,9 @@ __all__ = ["TensorDiscretisation"]
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
+# Share of a vector below the highest degree that rounding and Arnoldi leave.
+EDGE = 1e-3
+
 
 @dataclass(frozen=True)
 class TensorDiscretisation:
@@ -99,6 +102,17 @@ class TensorDiscretisation:
             np.concatenate(column) for column in zip(*parts, strict=True)
         )
         return csc_array((entries, (rows, columns)), shape=(len(k), len(k)))
+
+    def on_edge(self, vector: Vector, sector: Sector, truncation: Truncation) -> bool:
+        """Whether a vector lies in the highest degree alone.
+
+        An eigenvector there is one of the truncation, not of L: k = 1 has combinations
+        of degree m + n that no lower degree is coupled to. Their eigenvalue, -A²/2, is
+        the same in every truncation of that parity.
+        """
+        states = TensorStates(sector, truncation)
+        inside = states.m + states.n < truncation.degree
+        return bool(np.linalg.norm(vector[inside]) < EDGE * np.linalg.norm(vector))
 
     def embed(
         self, vector: Vector, sector: Sector, small: Truncation, large: Truncation
