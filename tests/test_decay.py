@@ -59,6 +59,62 @@ def test_a_decay_that_bends_has_a_standard_error_that_says_so():
     assert abs(found.rate - 0.3) < 0.5
 
 
+TRUE_RATE = 0.5
+# What else a series may hold, relative to e^{−λs}.
+COMPANY = {
+    "a faster mode": lambda s, share: share * np.exp(-0.2 * s),
+    "a much faster mode": lambda s, share: share * np.exp(-1.0 * s),
+    "an oscillation": lambda s, share: share / (1 + share) * np.cos(1.3 * s + 1.0),
+    "a slow oscillation": lambda s, share: share / (1 + share) * np.cos(0.4 * s),
+    "two of them": lambda s, share: (
+        share * np.exp(-0.3 * s) * (1 + 0.5 * np.cos(0.9 * s))
+    ),
+}
+
+
+@pytest.mark.parametrize("company", COMPANY)
+@pytest.mark.parametrize("share", [0.1, 1.0, 10.0])
+def test_the_error_covers_the_rate_of_the_slowest_exponential(company, share):
+    # The faster part may be what a line follows: only the errors are asked to be right.
+    s = np.linspace(0.0, 20.0, 161)
+    values = np.exp(-TRUE_RATE * s) * (1 + COMPANY[company](s, share))
+    found = fit_decay(s, values)
+    # By its scatter and its bend alone a line is off by up to 4.7 errors here.
+    assert abs(found.rate - TRUE_RATE) <= 2 * found.standard_error
+
+
+@pytest.mark.parametrize("level", [1e-9, 1e-7, 1e-5, 1e-3])
+def test_a_series_that_levels_off_is_fitted_above_its_level(level):
+    # ½‖x + y‖² with ‖x‖ ~ e^{−λs/2}: both squares and their product.
+    s = np.linspace(0.0, 60.0, 301)
+    decay = np.exp(-TRUE_RATE * s)
+    values = decay + level + 2 * 0.7 * np.sqrt(level * decay)
+    found = fit_decay(s, values)
+    assert found.window[1] < s[values > 99 * level][-1] + 0.3
+    assert abs(found.rate - TRUE_RATE) <= 2 * found.standard_error
+
+
+def test_a_rate_that_is_not_resolved_comes_with_what_would_resolve_it():
+    flat = fit_decay(S, np.exp(-2.0 * S) + 1e-5 * np.exp(-0.02 * S), (2.0, 8.0))
+    assert not flat.resolved
+    assert "is not resolved on [2, 8]: the series levels off; use" in flat.advice
+    assert "`fp.spectral_gap(model)` gives half of it without a run" in flat.advice
+    bent = fit_decay(S, np.exp(-S) + 0.2 * np.exp(-0.2 * S), (0.0, 4.0))
+    assert not bent.resolved
+    assert "is not resolved on [0, 4]: go on to s = 8 or further" in bent.advice
+    assert fit_decay(S, np.exp(-S)).advice == ""
+
+
+def test_errors_of_the_values_and_of_the_step_are_part_of_the_error():
+    values = np.exp(-S)
+    known = fit_decay(S, values, step_error=0.03)
+    assert known.step_error == pytest.approx(0.03)
+    assert known.standard_error == pytest.approx(0.03)
+    # Values that are too large by a share growing like s: a slope off by 0.02.
+    shifted = fit_decay(S, values, errors=values * np.expm1(0.02 * S))
+    assert shifted.step_error == pytest.approx(0.02)
+
+
 @pytest.mark.parametrize(
     "values",
     [np.full_like(S, 1e-16), np.full_like(S, np.nan), np.full_like(S, -1.0)],

@@ -9,7 +9,7 @@ FLOORS = {
     "environment": 0, "_compilation": 0, "_digests": 0,
     "potentials": 1, "curves": 1, "models": 1,
     "cells": 2, "grids": 2, "planes": 2, "initial": 2, "diagnostics": 2,
-    "functionals": 2, "process": 2, "decay": 2,
+    "functionals": 2, "process": 2, "decay": 2, "matrix_pencil": 2,
     "densities": 2, "interrupts": 2, "identity": 2,
     "schedule": 2, "memory": 2, "progress": 2, "provenance": 2,
     "paths": 2, "spectral": 2, "reduced": 2,

@@ -68,6 +68,19 @@ def test_the_integral_of_the_entropy_is_that_of_the_spectral_solver(study):
     assert np.all(dataset["tail_bound"] < 0.01 * dataset["inverse_decay_rate"])
 
 
+def test_a_run_that_resolves_no_mode_gives_a_slope_that_covers_and_says_so():
+    found = rate_versus_noise(
+        QUADRATIC, [1.0], quick=True, parts=["relaxation", "gap"], s_end=5.0, workers=0
+    ).isel(noise=0)
+    assert found["slowest_class"].item() == "not resolved"
+    off = abs(found["entropy_rate"] - 2 * found["gap"])
+    assert off <= 2 * found["entropy_rate_error"]
+    assert found["entropy_rate"] == found["entropy_rate_line"]
+    message = found["message"].sel(part="relaxation").item()
+    assert "no slowest mode stands out in a run to s = 5: the rate of H is" in message
+    assert "`s_end=10` would resolve it if modes are apart, and the part" in message
+
+
 def test_runs_see_the_slowest_branch_of_every_symmetry(study):
     dataset, _ = study
     branches = dataset["branch_rate"].isel(mode=0)

@@ -19,6 +19,7 @@ SCRIPTS = (
     "spectral_reference.py",
     "stationary_densities.py",
     "decay_rate_is_the_gap.py",
+    "entropy_rate_coverage.py",
     "rate_asymptotes.py",
     "large_noise_limit.py",
     "small_noise_limit.py",

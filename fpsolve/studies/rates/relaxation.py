@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from dataclasses import dataclass
 from typing import Any
 
@@ -10,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicHermiteSpline
 
-from fpsolve.decay import fit_decay
+from fpsolve.decay import DecayRate, fit_decay
 from fpsolve.grids import PhaseSpaceGrid
 from fpsolve.models import LayDownModel
 from fpsolve.potentials import Potential
@@ -243,12 +244,12 @@ def _rates(
     modes, errors = (np.array(column) for column in zip(*found, strict=True))
     apparent = np.array([fine.modes[name].apparent for name in names])
     slowest = _slowest(-modes.real, errors, apparent)
-    rate, error = (
-        (-modes[slowest].real, errors[slowest])
-        if slowest is not None
-        else (math.nan, math.nan)
-    )
-    line = fit_decay(fine.s, fine.entropy)
+    line = fit_decay(fine.s, fine.entropy, step_error=_step_error(coarse, fine, other))
+    if slowest is None:
+        rate, error = line.rate / 2, line.standard_error / 2
+        _warn_of_line(line, fine.s[-1])
+    else:
+        rate, error = -modes[slowest].real, errors[slowest]
     return {
         "entropy_rate": 2 * rate,
         "entropy_rate_error": 2 * error,
@@ -259,6 +260,29 @@ def _rates(
         "slowest_class": "not resolved" if slowest is None else names[slowest],
         "quadratic_share": fine.quadratic,
     }
+
+
+def _step_error(coarse: _Relaxation, fine: _Relaxation, other: _Relaxation) -> float:
+    """Error of the slope of −ln H from step and grid, relative."""
+    slopes = [_slope(run) for run in (coarse, fine, other)]
+    step = abs(slopes[1] - slopes[0]) / 3
+    grid = _GRID_FACTOR * abs(slopes[2] - slopes[0])
+    return (step + grid) / abs(slopes[1])
+
+
+def _slope(run: _Relaxation) -> float:
+    return fit_decay(run.s, run.entropy).rate
+
+
+def _warn_of_line(line: DecayRate, s_end: float) -> None:
+    """Say what stands in for the rate of a mode, and what would do better."""
+    warnings.warn(
+        f"no slowest mode stands out in a run to s = {s_end:.4g}: the rate of H is the "
+        f"slope of ln H, {line}; `s_end={2 * s_end:.4g}` would resolve it if modes are "
+        'apart, and the part "gap" is half of it without a run.',
+        UserWarning,
+        stacklevel=2,
+    )
 
 
 def _slowest(rates: Array, errors: Array, apparent: Array) -> int | None:
