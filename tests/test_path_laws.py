@@ -4,10 +4,16 @@ import math
 
 import numpy as np
 import pytest
-from scipy import stats
+from scipy import ndimage, stats
 
 import fpsolve as fp
-from fpsolve.paths import DensityLaw, EquilibriumLaw, GaussianLaw, PointLaw
+from fpsolve.paths import (
+    DensityLaw,
+    EquilibriumLaw,
+    GaussianLaw,
+    PointLaw,
+    spline_bounds,
+)
 from fpsolve.paths.rejection import CellRejection
 
 N = 100_000
@@ -216,3 +222,61 @@ def test_a_potential_that_hardly_grows_cannot_be_sampled():
     )
     with pytest.raises(ValueError, match="`potential` must"):
         EquilibriumLaw(slow)
+
+
+def disc(grid, radius=1.5, width=0.0):
+    """Constant on a disc, zero outside of it or of its rim."""
+    distance = np.broadcast_to(np.hypot(*grid.plane())[:, :, None], grid.shape)
+    if width == 0.0:
+        return (distance < radius).astype(float)
+    return 0.5 * (1 - np.tanh((distance - radius) / width))
+
+
+@pytest.mark.parametrize("n", [1, 100_000])
+def test_a_density_with_a_jump_is_refused_whatever_the_number_of_paths(n):
+    grid = fp.PhaseSpaceGrid(5.0, (32, 32, 8))
+    message = (
+        r"`p` must be resolved by its grid to be sampled, got a share of 0\.034 of"
+    )
+    with pytest.raises(ValueError, match=message):
+        DensityLaw(grid, disc(grid)).sample(np.random.default_rng(1), n)
+
+
+def test_a_density_with_a_rim_is_sampled_for_any_number_of_paths():
+    grid = fp.PhaseSpaceGrid(5.0, (32, 32, 8))
+    law = DensityLaw(grid, disc(grid, width=0.3))
+    # Each of as many proposals and more checks the bound of its cell.
+    xi, _ = law.sample(np.random.default_rng(1), N)
+    finer = fp.PhaseSpaceGrid(5.0, (96, 96, 8))
+    p = law.density(finer).sum(axis=2)
+    exact = float((p * np.hypot(*finer.plane()) ** 2).sum() / p.sum())
+    square = (xi**2).sum(axis=1)
+    assert abs(square.mean() - exact) < 4 * square.std() / math.sqrt(N)
+
+
+def test_the_bound_of_a_spline_on_a_cell_is_one_and_is_sharp():
+    rng = np.random.default_rng(3)
+    coefficients = rng.standard_normal((5, 6, 7))
+    cells = np.argwhere(np.ones(coefficients.shape, dtype=bool))
+    bounds = spline_bounds.largest_bernstein(coefficients, cells)
+    inside = rng.uniform(-0.5, 0.5, (3, 300))
+    largest = [
+        ndimage.map_coordinates(
+            coefficients, cell[:, None] + inside, order=5, mode="grid-wrap",
+            prefilter=False,
+        ).max()
+        for cell in cells
+    ]  # fmt: skip
+    assert np.all(bounds >= largest)
+    # By how much points and Bernstein coefficients may miss the maximum, of size one.
+    assert np.mean(bounds - largest) < 0.05
+    rough = spline_bounds.largest_around(coefficients).ravel()
+    halved = spline_bounds.largest_around(spline_bounds.halved(coefficients))
+    halved = halved[::2, ::2, ::2].ravel()
+    assert np.all(bounds <= halved)
+    assert np.all(halved <= rough)
+    low = np.full(coefficients.shape, -10.0)
+    raised = spline_bounds.bounded_by(coefficients, low)
+    np.testing.assert_array_equal(raised.ravel(), bounds)
+    high = np.full(coefficients.shape, 10.0)
+    np.testing.assert_array_equal(spline_bounds.bounded_by(coefficients, high), high)

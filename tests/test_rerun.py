@@ -51,9 +51,16 @@ def energy(start, **options):
     return ENERGY.solve(start, (0.0, 2.0), 0.5, grid=ENERGY.grid(20), **options)
 
 
+# A check refuses a grid on which it could not tell anything.
+FINER = fp.PhaseSpaceGrid(5.5, (24, 24, 16))
+START_ON_FINER = fp.initial.gaussian(
+    FINER, mean=(1.0, 0.3), variance=1.0, angle=1.0, concentration=1.0
+)
+
+
 def checked(p0, **options):
     return studies.cross_check(
-        MODEL, p0, [0.5], n_paths=1000, seed=1, grid=GRID, ds=0.25, paths_ds=0.125,
+        MODEL, p0, [0.5], n_paths=1000, seed=1, grid=FINER, ds=0.25, paths_ds=0.125,
         solve_options={"boundary_tolerance": 1.0}, **options,
     )  # fmt: skip
 
@@ -96,7 +103,7 @@ RESULTS = {
     ),
     "small noise, spectrum": lambda: studies.small_noise_spectrum(QUADRATIC, [0.8]),
     "energy tables": lambda: tables_dataset(ENERGY, 3, 2),
-    "check": lambda: checked(START, scheme=fp.drift_kick(MODEL, GRID)),
+    "check": lambda: checked(START_ON_FINER, scheme=fp.drift_kick(MODEL, FINER)),
     "check, law": lambda: checked(GaussianLaw((0.5, 0.0), 0.8, 1.0, 1.0)),
 }
 
@@ -122,7 +129,7 @@ def test_a_zarr_store_and_an_object_are_repeated_too(tmp_path):
     solution = solved()
     for result in (solution, solution.save(tmp_path / "result.zarr")):
         assert fp.compare(solution, fp.rerun(result)).equal
-    check = checked(START)
+    check = checked(START_ON_FINER)
     assert isinstance(fp.rerun(check), studies.CrossCheck)
 
 
@@ -256,9 +263,9 @@ def test_results_that_do_not_say_how_they_were_made_are_refused():
         fp.rerun(3.0)
 
 
-def test_paths_that_went_on_are_repeated_as_they_are():
-    with pytest.raises(NotRepeatableError, match="`n_paths` must not be changed for"):
-        fp.rerun(sampled().continued(2.0), n_paths=3)
+def test_paths_that_went_on_are_repeated_in_one_go_with_changes():
+    fewer = fp.rerun(sampled().continued(2.0), n_paths=3)
+    assert np.array_equal(fewer.states, sampled(n_paths=3, s_end=2.0).states)
 
 
 def test_the_functions_of_a_study_are_a_closed_list():

@@ -47,6 +47,9 @@ class AgreementTest:
     step_error : float
         Estimated step error of density and paths together, in the unit of
         `detectable`; NaN where nothing is known of it.
+    grid_error : float
+        Estimated error of the density's grid, in the unit of `detectable`; the test
+        allows for it. NaN where nothing is known of it.
     degrees : int or None
         Degrees of freedom of χ², number of cells of "largest cell".
     density, paths, standard_error : float
@@ -67,6 +70,7 @@ class AgreementTest:
     density: float = math.nan
     paths: float = math.nan
     standard_error: float = math.nan
+    grid_error: float = math.nan
 
     @property
     def agrees(self) -> bool:

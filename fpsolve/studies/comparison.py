@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+import math
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, cast
 
@@ -12,6 +13,7 @@ from numpy.typing import NDArray
 from fpsolve._arrays import check_numbers
 from fpsolve._blas import one_blas_thread
 from fpsolve._checks import check_integer, check_kind, check_real
+from fpsolve.errors import ToleranceError
 from fpsolve.grids import PhaseSpaceGrid
 from fpsolve.io.recipes import recipe
 from fpsolve.models import LayDownModel
@@ -22,19 +24,25 @@ from fpsolve.solution import Solution
 from fpsolve.solve import Scheme, solve
 from fpsolve.steady_state import SteadyState
 from fpsolve.studies.agreement import MARGINALS, CrossCheck
+from fpsolve.studies.coarser import coarser_runs, start_noncentrality, within_error
 from fpsolve.studies.references import describe, model_of, places, reference_at
 from fpsolve.studies.starts import density_and_law
 from fpsolve.studies.station import TESTS_PER_STATION, Station
 from fpsolve.studies.steps import paths_step, solver_step
 
 if TYPE_CHECKING:
-    from fpsolve.paths import Paths
+    from fpsolve.paths import DensityLaw, Paths
 
 __all__ = ["compare", "cross_check"]
 
 Array = NDArray[np.float64]
 
 FEWEST_PATHS, FEWEST_CELLS = 1000, 8
+# Beyond this L1 error of the grid a test would allow for whatever it finds.
+MOST_GRID_ERROR = 0.1
+# What different starts may add to the χ² of a test: a share of its scatter, which is 8
+# with 32 degrees of freedom and 32 with 512.
+MOST_NONCENTRALITY = 1.0
 RECORD_EVERY = 8
 
 
@@ -63,6 +71,8 @@ def cross_check(
     the counts of paths in cells of phase space against the integrals of the density
     over them (χ², and the largest single cell), the marginals of ξ1, ξ2 and α (χ²),
     and the moments in standard errors. Memory does not grow with the number of paths.
+    Two more runs on coarser grids estimate the error of the grid, for which every test
+    allows.
 
     Parameters
     ----------
@@ -111,6 +121,10 @@ def cross_check(
     ValueError, TypeError
         For arguments that do not fit each other; besides whatever `solve` and
         `sample_paths` raise.
+    ToleranceError
+        If the error of the grid is more than a tenth in L1, so that nothing could be
+        learned, or if a density on the grid is so steep that the paths would see that
+        it is sampled by interpolation.
 
     References
     ----------
@@ -123,6 +137,8 @@ def cross_check(
     _check_options(false_alarm, cells)
     grid = _grid_of(grid, scheme, p0)
     p0, law = density_and_law(p0, grid)
+    if isinstance(law, DensityLaw):
+        _check_start(law, n_paths)
     scheme = _scheme_for(model, grid, p0) if scheme is None else scheme
     _check_scheme(scheme, model, grid)
     ds = solver_step(model, grid, s, n_paths) if ds is None else float(ds)
@@ -131,6 +147,8 @@ def cross_check(
         save_at=s.tolist(), extrapolate=extrapolate, progress=progress,
         **{"record_every": RECORD_EVERY, **(solve_options or {})},
     )  # fmt: skip
+    coarser = coarser_runs(solution, scheme, law, solve_options)
+    _check_resolved(solution, coarser, s)
     if paths_ds is None:
         paths_ds = _paths_step(solution, s, n_paths)
     paths = sample_paths(
@@ -138,7 +156,12 @@ def cross_check(
         seed=seed, initial=law, save_at=s.tolist(), method=method,
         histogram=grid, keep=False, client=client, progress=progress,
     )  # fmt: skip
-    check = compare(solution, paths, s=s, false_alarm=false_alarm, cells=cells)
+    check = compare(
+        solution, paths, s=s, false_alarm=false_alarm, cells=cells,
+        coarser=() if isinstance(coarser, str) else coarser,
+    )  # fmt: skip
+    if isinstance(coarser, str):
+        check = replace(check, solver={**check.solver, "coarser": coarser})
     is_density = isinstance(law, DensityLaw)
     again = recipe("cross_check", {
         "model": model, "s": s, "n_paths": n_paths, "seed": seed, "ds": ds,
@@ -158,6 +181,7 @@ def compare(
     s: float | Iterable[float] | None = None,
     false_alarm: float = 1e-3,
     cells: int = 512,
+    coarser: Sequence[Solution] = (),
 ) -> CrossCheck:
     """A density that was computed against paths that were sampled; see `cross_check`.
 
@@ -172,6 +196,10 @@ def compare(
         Probability that any test fails when there is nothing to find, at most.
     cells : int
         Largest number of cells of phase space that are told apart.
+    coarser : sequence of Solution, optional
+        The same run on one or two grids, ever coarser. The error of the grid of
+        `density`, estimated from the differences, is then allowed for in every test;
+        without them that error counts as disagreement.
 
     Returns
     -------
@@ -189,7 +217,9 @@ def compare(
     check_integer("n_paths", paths.n_paths, at_least=FEWEST_PATHS)
     chosen = places(density, np.asarray(paths.s), s)
     size = false_alarm / (TESTS_PER_STATION * chosen.size)
-    stations = [Station(density, paths, float(one), size, cells) for one in chosen]
+    stations = [
+        Station(density, paths, float(one), size, cells, coarser) for one in chosen
+    ]
     return CrossCheck(
         model=model_of(density, paths),
         grid=density.grid,
@@ -197,7 +227,10 @@ def compare(
         tests=tuple(test for station in stations for test in station.tests()),
         false_alarm=false_alarm,
         n_paths=paths.n_paths,
-        solver=describe(density),
+        solver={
+            **describe(density),
+            "coarser": [list(run.grid.shape) for run in coarser],
+        },
         sampler=_describe_paths(paths),
         probabilities=_stacked([station.line_probabilities for station in stations]),
         counts=_stacked([station.line_counts for station in stations]),
@@ -279,6 +312,39 @@ def _scheme_for(model: LayDownModel, grid: PhaseSpaceGrid, p0: Array) -> Scheme:
         else:
             return balanced
     return drift_kick(model, grid)
+
+
+def _check_start(law: DensityLaw, n_paths: int) -> None:
+    """Raise ToleranceError where paths and the run begin visibly differently."""
+    worst, distance = start_noncentrality(law)
+    most = MOST_NONCENTRALITY / max(worst, 1e-300)
+    if not n_paths <= most:
+        cells = " x ".join(map(str, law.grid.shape))
+        raise ToleranceError(
+            distance, distance * math.sqrt(most / n_paths),
+            f"by that `p0` on {cells} cells differs in L1 from the law that paths "
+            f"begin with, which {most:.2g} paths do not see and {n_paths} would; "
+            "refine the grid, smooth `p0`, or give a GaussianLaw",
+        )  # fmt: skip
+
+
+def _check_resolved(
+    solution: Solution, coarser: tuple[Solution, ...] | str, s: Array
+) -> None:
+    """Raise ToleranceError where the grid's error leaves nothing to compare."""
+    if isinstance(coarser, str):
+        return
+    grid = solution.grid
+    for one in s:
+        p = solution.density(float(one))
+        error = within_error(p, grid, float(one), coarser).distance
+        if not error <= MOST_GRID_ERROR:
+            cells = " x ".join(map(str, grid.shape))
+            raise ToleranceError(
+                error, MOST_GRID_ERROR,
+                f"that is the L1 error of {cells} cells at s = {one:g}, which hides "
+                "what paths could show; refine the grid",
+            )  # fmt: skip
 
 
 def _paths_step(solution: Solution, s: Array, n_paths: int) -> float:

@@ -26,6 +26,7 @@ _NUMBERS = {
     "detectable": "disagreement seen with probability 0.99",
     "difference": "disagreement found",
     "step_error": "estimated step error of density and paths",
+    "grid_error": "estimated error of the density's grid, for which the test allows",
     "density": "value by the density",
     "paths": "value by the paths",
     "standard_error": "standard error of the value by the paths",
@@ -108,7 +109,9 @@ def from_xarray(dataset: xr.Dataset) -> CrossCheck:
     UserWarning
         If the model was made of a user's own functions; `model` is None then.
     """
-    numbers = (*_NUMBERS, "degrees", "s", "test")
+    # Older files know nothing of the error of the grid.
+    always = [number for number in _NUMBERS if number != "grid_error"]
+    numbers = (*always, "degrees", "s", "test")
     counts = [f"{kind}_{which}" for kind in ("probability", "count")
               for which in MARGINALS]  # fmt: skip
     check_complete(dataset, (*numbers, *counts), _NEEDED_ATTRIBUTES)
@@ -137,7 +140,8 @@ def from_xarray(dataset: xr.Dataset) -> CrossCheck:
 
 def _read_tests(dataset: xr.Dataset) -> Iterator[AgreementTest]:
     """Yield every test, in the order of arclengths, then names."""
-    tables = {number: dataset[number].to_numpy() for number in _NUMBERS}
+    known = [number for number in _NUMBERS if number in dataset]
+    tables = {number: dataset[number].to_numpy() for number in known}
     degrees = dataset["degrees"].to_numpy()
     for row, s in enumerate(dataset["s"].to_numpy()):
         for column, name in enumerate(dataset["test"].to_numpy()):

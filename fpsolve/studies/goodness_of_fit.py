@@ -1,7 +1,9 @@
 """Tests of counts and of means, each with the smallest disagreement that it sees.
 
 Every test has a size: the probability that it rejects what is right. `POWER` is the
-probability with which it rejects what differs by the `detectable` amount.
+probability with which it rejects what differs by the `detectable` amount. What is right
+may itself be known with an error only: no test rejects what differs by that error with
+more than its size.
 """
 
 from __future__ import annotations
@@ -47,8 +49,13 @@ class Outcome(NamedTuple):
     degrees: int | None = None
 
 
-def chi_square(counts: Counts, probabilities: Array, size: float) -> Outcome:
+def chi_square(
+    counts: Counts, probabilities: Array, size: float, error: Array | None = None
+) -> Outcome:
     """Pearson's Σ (n_i − N q_i)²/(N q_i) against χ² with k − 1 degrees of freedom.
+
+    With errors e_i of the probabilities it is a noncentral χ², with the noncentrality
+    N Σ e_i²/q_i.
 
     Detectable is an L1 distance: every density with Σ|q′_i − q_i| ≥ √(λ/N) is
     rejected with probability `POWER`, because Σ (q′ − q)²/q ≥ (Σ|q′ − q|)² makes the
@@ -63,19 +70,25 @@ def chi_square(counts: Counts, probabilities: Array, size: float) -> Outcome:
         Of the cells, with total 1.
     size : float
         Probability of rejecting what is right.
+    error : ndarray, shape (k,), optional
+        How far the probabilities may be off.
     """
     n_paths, degrees = int(counts.sum()), counts.size - 1
     if degrees < 1:
         return Outcome(0.0, 1.0, math.inf, math.inf, 0)
     expected = n_paths * probabilities
     statistic = float(((counts - expected) ** 2 / expected).sum())
-    critical = float(stats.chi2.isf(size, degrees))
+    law = stats.chi2(degrees)
+    if error is not None and np.any(error):
+        law = stats.ncx2(degrees, n_paths * float((error**2 / probabilities).sum()))
+    critical = float(law.isf(size))
     distance = math.sqrt(_noncentrality(critical, degrees) / n_paths)
-    p_value = float(stats.chi2.sf(statistic, degrees))
-    return Outcome(statistic, p_value, critical, distance, degrees)
+    return Outcome(statistic, float(law.sf(statistic)), critical, distance, degrees)
 
 
-def largest_deviation(counts: Counts, probabilities: Array, size: float) -> Outcome:
+def largest_deviation(
+    counts: Counts, probabilities: Array, size: float, error: Array | None = None
+) -> Outcome:
     """max |n_i − N q_i|/√(N q_i (1 − q_i)), its p-value from exact binomial tails.
 
     The p-value is that of the most extreme cell times the number of cells
@@ -84,16 +97,20 @@ def largest_deviation(counts: Counts, probabilities: Array, size: float) -> Outc
 
     Parameters
     ----------
-    counts, probabilities, size
+    counts, probabilities, size, error
         As for `chi_square`.
     """
     n_paths, n_cells = int(counts.sum()), counts.size
-    below = stats.binom.cdf(counts, n_paths, probabilities)
-    above = stats.binom.sf(counts - 1, n_paths, probabilities)
+    off = np.zeros(n_cells) if error is None else np.abs(error)
+    below = stats.binom.cdf(counts, n_paths, np.maximum(probabilities - off, 0.0))
+    above = stats.binom.sf(counts - 1, n_paths, np.minimum(probabilities + off, 1.0))
     smallest = float(np.minimum(2 * np.minimum(below, above), 1.0).min())
+    spread = np.sqrt(n_paths * probabilities * (1 - probabilities))
     critical = float(stats.norm.isf(size / (2 * n_cells)))
     middle = float(np.median(probabilities))
     seen = (critical + _margin()) * math.sqrt((1 - middle) / (n_paths * middle))
+    seen += float(np.median(off)) / middle
+    critical += float(np.max(n_paths * off / spread))
     statistic = float(np.abs(scores(counts, probabilities)).max())
     return Outcome(statistic, min(1.0, n_cells * smallest), critical, seen, n_cells)
 
@@ -105,8 +122,12 @@ def scores(counts: Counts, probabilities: Array) -> Array:
     return np.asarray((counts - n_paths * probabilities) / spread)
 
 
-def z_score(value: float, expected: float, error: float, size: float) -> Outcome:
+def z_score(
+    value: float, expected: float, error: float, size: float, off: float = 0.0
+) -> Outcome:
     """(value − expected)/error, with its two-sided p-value under the normal law.
+
+    That of the nearest value within `off` of the expected one.
 
     Detectable is a shift of the expected value.
 
@@ -116,16 +137,20 @@ def z_score(value: float, expected: float, error: float, size: float) -> Outcome
         The value has the standard error `error`; the expected one has none.
     size : float
         Probability of rejecting what is right.
+    off : float
+        How far the expected value may be off.
     """
     difference = value - expected
+    critical = float(stats.norm.isf(size / 2))
+    seen = (critical + _margin()) * error + off
     if error > 0:
-        statistic = difference / error
+        statistic, allowed = difference / error, off / error
     else:
         rounding = ROUNDING * max(1.0, abs(expected))
-        statistic = 0.0 if abs(difference) <= rounding else math.inf
-    critical = float(stats.norm.isf(size / 2))
-    p_value = float(2 * stats.norm.sf(abs(statistic)))
-    return Outcome(statistic, p_value, critical, (critical + _margin()) * error)
+        statistic = 0.0 if abs(difference) <= rounding + off else math.inf
+        allowed = 0.0
+    p_value = float(2 * stats.norm.sf(max(abs(statistic) - allowed, 0.0)))
+    return Outcome(statistic, p_value, critical + allowed, seen)
 
 
 def _margin() -> float:

@@ -43,6 +43,7 @@ def report(check: CrossCheck) -> str:
         if len(check.failed) > len(shown):
             lines.append(f"  and {len(check.failed) - len(shown)} more")
     lines += [false_alarm(check), detection(check), *step_errors(check)]
+    lines.append(grid_errors(check))
     return "\n".join(lines)
 
 
@@ -112,13 +113,31 @@ def step_errors(check: CrossCheck) -> list[str]:
             "step error; reduce `ds` and `paths_ds`."
         ]
     if check.failed:
-        return [
-            f"{said}, which does not explain the disagreement; the grid may: its "
-            "errors are not in this estimate."
-        ]
+        return [f"{said}, which does not explain the disagreement."]
     if worst.blurred:
         return [f"{said}; reduce `ds` and `paths_ds` to see less than that."]
     return [f"{said}."]
+
+
+def grid_errors(check: CrossCheck) -> str:
+    """How much the tests allow for the grid, or that they do not."""
+    coarser = check.solver.get("coarser")
+    known = [test for test in check.tests if not math.isnan(test.grid_error)]
+    if not known or not coarser or isinstance(coarser, str):
+        why = f" ({coarser})" if isinstance(coarser, str) else ""
+        also = ", and may be what disagrees" if check.failed else ""
+        return (
+            f"The error of the grid is not estimated{why}{also}; pass `compare` runs "
+            "on coarser ones, or refine it."
+        )
+    worst = max(known, key=lambda test: test.grid_error / test.detectable)
+    label = LABELS.get(worst.name, worst.name)
+    cells = listed([" x ".join(map(str, shape)) for shape in coarser])
+    return (
+        f"The tests allow for the grid error of the density, at most "
+        f"{worst.grid_error / worst.detectable:.2g} times what is seen ({label} at s = "
+        f"{worst.s:g}: {worst.grid_error:.2g} by runs on {cells} cells)."
+    )
 
 
 def _why_unknown(check: CrossCheck) -> str:
