@@ -140,7 +140,8 @@ class Solution:
         """
         known = (self.errors or {}).get("relative_entropy")
         resolution = self._kink_error()
-        if known is None:
+        if known is None or not np.isfinite(known).all():
+            known = None
             resolution += self._step_error()
         return fit_decay(
             self.series["s"],

@@ -154,4 +154,4 @@ def spline_weights(offset: float) -> Array:
     """Weights of the 7 coefficients in the value at an offset from the centre."""
     knots = np.arange(-REACH, REACH + 1, dtype=np.float64)
     spline = BSpline.basis_element(knots, extrapolate=False)
-    return np.nan_to_num(spline(offset - AROUND))
+    return np.asarray(np.nan_to_num(spline(offset - AROUND)), dtype=np.float64)
