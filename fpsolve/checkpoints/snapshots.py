@@ -22,7 +22,7 @@ Array = NDArray[np.float64]
 
 _SLOTS = ("a", "b")
 # Scratch of the next step, and nothing before it.
-_NOT_KEPT = ("work",)
+_NOT_KEPT = ("work", "scratch")
 # Prefix of the arrays of a state among the members of a file.
 _ARRAY = "state_"
 

@@ -52,10 +52,12 @@ class _LayDownPDE(pde.PDEBase):  # type: ignore[misc]
         TypeError, ValueError
             If the field lives on another kind of grid; see `from_pde_field`.
         """
-        if self._last is None or self._last[0] is not state.grid:
+        last = self._last
+        if last is None or last[0] is not state.grid:
             from_pde_field(state)
-            self._last = state.grid, self._make_rate(own_grid(state.grid), None)
-        values = self._last[1](state.data, t)
+            # As a whole: a thread with another grid may be using this equation too.
+            last = self._last = state.grid, self._make_rate(own_grid(state.grid), None)
+        values = last[1](state.data, t)
         return pde.ScalarField(state.grid, values, label="evolution rate")
 
     def make_evolution_rate(self, state: Any, backend: Any) -> Rate:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -26,6 +27,14 @@ Array = NDArray[np.float64]
 # perturbed feet of an almost constant h differ by no more than rounding either.
 ROUNDING = 1e-13
 POINTS = (4, 6)
+
+
+@dataclass
+class Scratch:
+    """What one run needs besides its unknown: feet, and the second set of values."""
+
+    feet: Feet | None = None
+    spare: Array | None = None
 
 
 class AdjustedAdvection:
@@ -98,7 +107,6 @@ class AdjustedAdvection:
             np.ascontiguousarray(np.broadcast_to(component, shape))
             for component in model.potential.gradient(xi1, xi2)
         )
-        self._spare: Array | None = None
 
     @property
     def n_arrays(self) -> float:
@@ -107,7 +115,8 @@ class AdjustedAdvection:
 
     def __call__(self, state: State, s: float, ds: float) -> None:
         """Advance the state by ds; its correction and weight are left in it."""
-        feet = self.characteristics.feet(s, ds)
+        own = state.scratch = state.scratch or Scratch()
+        own.feet = feet = self.characteristics.feet(s, ds, own.feet)
         interpolate_at_feet(
             state.values, feet.places, feet.growth, self.points, self.limited,
             state.work,
@@ -126,19 +135,20 @@ class AdjustedAdvection:
         if abs(mass - target) <= ROUNDING * target:
             state.work *= target / mass
             return
-        if self._spare is None:
-            self._spare = np.empty(self.grid.shape)
-        self._perturbed_values(state, feet, mass <= target, s, ds)
-        other = self.form.mass(self._spare)
+        spare = self._perturbed_values(state, feet, mass <= target, s, ds)
+        other = self.form.mass(spare)
         theta = (target - other) / (mass - other) if mass != other else math.inf
         state.theta = theta
         if not 0.0 <= theta <= 1.0:
             raise MassCorrectionError(s, theta, state.n_steps)
-        blend(state.work, self._spare, theta, state.work)
+        blend(state.work, spare, theta, state.work)
 
     def _perturbed_values(
         self, state: State, feet: Feet, upper: bool, s: float, ds: float
-    ) -> None:
+    ) -> Array:
+        if state.scratch.spare is None:
+            state.scratch.spare = np.empty(self.grid.shape)
+        spare: Array = state.scratch.spare
         speed1, speed2 = self.model.curve.velocity(s + ds)
         cosine, sine = np.cos(self.grid.alpha), np.sin(self.grid.alpha)
         d1, d2, d_alpha = self.grid.spacing
@@ -151,5 +161,6 @@ class AdjustedAdvection:
             velocity1 / d1, velocity2 / d2,
             *self.force, cosine, sine, reach / d_alpha,
             weighted * velocity1, weighted * velocity2,
-            self.points, self.limited, upper, self._spare,
+            self.points, self.limited, upper, spare,
         )  # fmt: skip
+        return spare

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,10 +26,13 @@ class Feet:
         Feet in index units.
     growth : ndarray, shape (n1, n2, n_alpha) or (1, 1, 1)
         Logarithm of the factor the unknown collects on the way; one zero for none.
+    ds : float
+        Length of the step.
     """
 
     places: Array
     growth: Array
+    ds: float
 
 
 class Characteristics:
@@ -38,7 +41,8 @@ class Characteristics:
     Classical fourth order in ds, with the reference curve taken at its exact
     position. Along the way the logarithm of the unknown changes by the reaction
     term: w·∇B with w = −γ′ for h = e^{B} p, and −∇B·τ for p itself. Feet depend on s
-    only when γ′ does; otherwise they are computed once.
+    only when γ′ does; otherwise they are computed once, and never changed: threads
+    may share them.
 
     Parameters
     ----------
@@ -53,30 +57,44 @@ class Characteristics:
     ) -> None:
         self.model, self.grid, self.balanced = model, grid, balanced
         self.reacts = not (balanced and model.curve.fixed)
-        self._feet: tuple[tuple[float, float], Feet] | None = None
+        self._shared: Feet | None = None
 
     @property
     def n_arrays(self) -> float:
         """Densities held: three coordinates and the growth where there is one."""
         return 4.0 if self.reacts else 3.0
 
-    def feet(self, s: float, ds: float) -> Feet:
-        """Feet at s of the characteristics that arrive at the centres at s + ds."""
-        key = (0.0 if self.model.curve.autonomous else s, ds)
-        if self._feet is None or self._feet[0] != key:
-            held = None if self._feet is None else self._feet[1]
-            self._feet = (key, self._trace_all(key[0], ds, held))
-        return self._feet[1]
+    def feet(self, s: float, ds: float, held: Feet | None = None) -> Feet:
+        """Feet at s of the characteristics that arrive at the centres at s + ds.
+
+        Parameters
+        ----------
+        s, ds : float
+        held : Feet, optional
+            Those of the step before in the same run. Where feet depend on s these
+            arrays are written again; where they do not, they serve again.
+        """
+        if not self.model.curve.autonomous:
+            return self._trace_all(s, ds, held)
+        for known in (held, self._shared):
+            if known is not None and known.ds == ds:
+                return known
+        # Its memory is given back, if nobody uses it, before as much is taken.
+        self._shared = known = None
+        self._shared = found = self._trace_all(0.0, ds, None)
+        return found
 
     def _trace_all(self, s: float, ds: float, held: Feet | None) -> Feet:
         shape = self.grid.shape
         if held is None:
             growth = np.zeros(shape if self.reacts else (1, 1, 1))
-            held = Feet(np.empty((3, *shape)), growth)
+            feet = Feet(np.empty((3, *shape)), growth, ds)
+        else:
+            feet = replace(held, ds=ds)
         planes = max(1, CELLS_PER_SLAB // (shape[1] * shape[2]))
         for start in range(0, shape[0], planes):
-            self._trace_slab(slice(start, min(start + planes, shape[0])), s, ds, held)
-        return held
+            self._trace_slab(slice(start, min(start + planes, shape[0])), s, ds, feet)
+        return feet
 
     def _trace_slab(self, slab: slice, s: float, ds: float, feet: Feet) -> None:
         xi1, xi2, alpha = self.grid.mesh()

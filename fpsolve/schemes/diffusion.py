@@ -13,6 +13,9 @@ from fpsolve.models import LayDownModel
 
 Array = NDArray[np.float64]
 
+# Steps whose factors are remembered; a run needs one or two.
+_KEPT = 4
+
 
 class Elimination(NamedTuple):
     """Factors of circ(off, a, off)⁻¹ circ(side, centre, side); see the kernel."""
@@ -67,18 +70,20 @@ class ImplicitDiffusion:
 
     def factors(self, ds: float) -> Elimination:
         """Elimination factors for the step ds."""
-        if ds not in self._factors:
-            if len(self._factors) > 4:
-                self._factors.clear()
-            number = self.diffusivity * ds / self.grid.spacing[2] ** 2
-            implicit = self.implicitness * number
-            explicit = number - implicit
-            self._factors[ds] = eliminate_circulant(
-                off=self.coupling - implicit,
-                side=self.coupling + explicit,
-                n=self.grid.shape[2],
-            )
-        return self._factors[ds]
+        known = self._factors
+        if ds in known:
+            return known[ds]
+        number = self.diffusivity * ds / self.grid.spacing[2] ** 2
+        implicit = self.implicitness * number
+        explicit = number - implicit
+        made = eliminate_circulant(
+            off=self.coupling - implicit,
+            side=self.coupling + explicit,
+            n=self.grid.shape[2],
+        )
+        # A new table takes the place of the old: a thread may be reading that.
+        self._factors = {**(known if len(known) <= _KEPT else {}), ds: made}
+        return made
 
 
 def eliminate_circulant(off: float, side: float, n: int) -> Elimination:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,6 +38,9 @@ class State:
         scheme without one.
     n_steps : int
         Steps made since the start.
+    scratch : object
+        What the scheme needs besides and writes again at every step. It belongs to
+        the run, not to the scheme, which several runs may share at the same time.
     """
 
     values: Array
@@ -45,6 +49,7 @@ class State:
     correction: float = 0.0
     theta: float | None = None
     n_steps: int = 0
+    scratch: Any = None
 
     def swap(self) -> None:
         """Exchange unknown and scratch."""
@@ -64,21 +69,23 @@ class DensityForm:
 
     grid: PhaseSpaceGrid
     weight: Array | None
-    sums: Array = field(init=False, repr=False)
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "sums", np.empty(self.grid.shape[:2]))
 
     def start(self, p0: Array) -> State:
         """State of a run that begins at the density p0."""
         p0 = self.grid.check(p0, "p0")
         values = np.empty_like(p0)
-        weight = np.ones(self.sums.shape) if self.weight is None else self.weight
+        plane = self.grid.shape[:2]
+        weight = np.ones(plane) if self.weight is None else self.weight
         scale_rows(p0, 1.0 / weight, values)
         if self.weight is not None:
             self._check_contrast(values, self.weight)
-        row_sums(p0, self.sums)
-        return State(values, np.empty_like(p0), self.sums.sum() * self.grid.cell_volume)
+        mass = self._sums(p0).sum() * self.grid.cell_volume
+        return State(values, np.empty_like(p0), mass)
+
+    def _sums(self, values: Array) -> Array:
+        sums = np.empty(self.grid.shape[:2])
+        row_sums(values, sums)
+        return sums
 
     def _check_contrast(self, values: Array, weight: Array) -> None:
         mean = self.mass(values) / (weight.sum() * self.grid.cell_volume)
@@ -99,13 +106,14 @@ class DensityForm:
 
     def mass(self, values: Array) -> float:
         """∫ w u dξ dα by the midpoint rule."""
-        row_sums(values, self.sums)
-        weighted = self.sums if self.weight is None else self.sums * self.weight
+        sums = self._sums(values)
+        weighted = sums if self.weight is None else sums * self.weight
         return float(weighted.sum()) * self.grid.cell_volume
 
     def rescale(self, state: State, factor: float) -> None:
         """u ← factor · u."""
-        scale_rows(state.values, np.full(self.sums.shape, factor), state.values)
+        factors = np.full(self.grid.shape[:2], factor)
+        scale_rows(state.values, factors, state.values)
 
 
 def plain_form(grid: PhaseSpaceGrid) -> DensityForm:

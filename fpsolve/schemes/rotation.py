@@ -84,23 +84,26 @@ class RotationDiffusion:
 
     def table(self, ds: float) -> RotationTable:
         """The matrices of R½ D R½ for the step ds."""
-        if ds not in self._tables:
-            table = rotation_table(
-                self.strength,
-                self.model.diffusivity,
-                ds,
-                self.grid.shape[2],
-                self.balanced,
-            )
-            self._make_room(table.nbytes)
-            self._tables[ds] = table
-        return self._tables[ds]
+        known = self._tables
+        if ds in known:
+            return known[ds]
+        table = rotation_table(
+            self.strength,
+            self.model.diffusivity,
+            ds,
+            self.grid.shape[2],
+            self.balanced,
+        )
+        # A new dictionary takes the place of the old: a thread may be reading that.
+        self._tables = {**self._kept_beside(table.nbytes, known), ds: table}
+        return table
 
-    def _make_room(self, nbytes: int) -> None:
+    def _kept_beside(
+        self, nbytes: int, known: dict[float, RotationTable]
+    ) -> dict[float, RotationTable]:
         # Richardson alternates between two steps: keep both tables if they fit.
-        held = sum(table.nbytes for table in self._tables.values())
-        if held + nbytes > LARGEST_TABLE * self.grid.nbytes:
-            self._tables.clear()
+        held = sum(table.nbytes for table in known.values())
+        return known if held + nbytes <= LARGEST_TABLE * self.grid.nbytes else {}
 
     def reaction(self, s: float, ds: float) -> Array:
         """Factor exp(−(γ(s + ds) − γ(s))·∇B) of the balanced form; (n1 n2,)."""

@@ -68,12 +68,13 @@ class Translation:
     def _remembered_taps(self, s: float, ds: float) -> tuple[Taps, ...]:
         # Rounding of s must not defeat the memory for belts of constant speed.
         start = 0.0 if self.curve.autonomous else s
-        key = (start, ds)
-        if key not in self._taps:
-            if len(self._taps) >= _KEPT:
-                self._taps.clear()
-            self._taps[key] = self._make_taps(start, ds)
-        return self._taps[key]
+        key, known = (start, ds), self._taps
+        if key in known:
+            return known[key]
+        made = self._make_taps(start, ds)
+        # A new table takes the place of the old: a thread may be reading that.
+        self._taps = {**(known if len(known) < _KEPT else {}), key: made}
+        return made
 
     def _make_taps(self, s: float, ds: float) -> tuple[Taps, ...]:
         shift1, shift2 = self.shifts(s, ds)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import time
-import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
@@ -18,6 +17,7 @@ from fpsolve._checks import check_call, check_kind, shown
 from fpsolve.errors import RunInterrupted
 from fpsolve.identity import digest_or_none
 from fpsolve.studies.rates.executors import executor_for, finished_tasks
+from fpsolve.studies.rates.recorded_warnings import recorded_warnings
 from fpsolve.studies.rates.store import CaseStore
 
 __all__ = ["Case", "SweepProgress", "sweep"]
@@ -204,8 +204,7 @@ def _code_of(
 def run_case(function: Function, arguments: Mapping[str, Any]) -> dict[str, Any]:
     """Outcome of one case, whatever happens in it: the fields of a `Case`."""
     began = time.perf_counter()
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("default")
+    with recorded_warnings() as caught:
         try:
             returned = function(**arguments)
             values = {str(name): np.asarray(one) for name, one in returned.items()}
