@@ -18,6 +18,7 @@ __all__ = [
     "ConfigurationError",
     "DomainTooSmallError",
     "FileFormatError",
+    "ForkedProcessError",
     "FpsolveError",
     "GridMismatchError",
     "MassCorrectionError",
@@ -367,6 +368,22 @@ class ToleranceError(FpsolveError):
         )
         self.reached = reached
         self.tolerance = tolerance
+
+
+class ForkedProcessError(FpsolveError, RuntimeError):
+    """A kernel was called in a process that was forked from running threads.
+
+    GNU OpenMP, from which numba has its threads on Linux, would end the process or
+    wait for ever for threads that a fork does not copy.
+    """
+
+    def __init__(self) -> None:
+        super().__init__(
+            "kernels cannot run in a process that was forked after their threads had "
+            "started; start it by `multiprocessing.get_context('spawn')` (or "
+            "'forkserver'), for an executor `mp_context=` of the same, or set "
+            "NUMBA_THREADING_LAYER=workqueue, whose threads start anew."
+        )
 
 
 class ConfigurationError(FpsolveError):

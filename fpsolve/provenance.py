@@ -70,11 +70,13 @@ class Stopwatch:
 @contextmanager
 def announced_compilation(aloud: bool) -> Iterator[None]:
     """Log that kernels compile, and say so on the terminal if `aloud`."""
+    from fpsolve._kernels.compiling import kernels_are_kept
 
     def tell(name: str) -> None:
         LOGGER.info("compiling kernels, beginning with %s", name)
         if aloud:
-            print("compiling kernels (once, then cached) …", file=sys.stderr)
+            kept = "once, then cached" if kernels_are_kept() else "not to be kept"
+            print(f"compiling kernels ({kept}) …", file=sys.stderr)
 
     with announce(tell):
         yield

@@ -67,6 +67,13 @@ EXAMPLES = [
         "anew.",
     ),
     (
+        errors.ForkedProcessError(),
+        "kernels cannot run in a process that was forked after their threads had "
+        "started; start it by `multiprocessing.get_context('spawn')` (or "
+        "'forkserver'), for an executor `mp_context=` of the same, or set "
+        "NUMBA_THREADING_LAYER=workqueue, whose threads start anew.",
+    ),
+    (
         errors.SteadyStateError(residual=1e-3, tolerance=1e-8),
         "steady state not reached: residual 0.001 exceeds tolerance 1e-08; refine "
         "the grid, shorten `ds` or enlarge `tolerance`.",

@@ -18,6 +18,7 @@ from fpsolve._kernels import (
     translation,
     tridiagonal,
 )
+from fpsolve._kernels.compiling import ParallelKernel
 from fpsolve.grids import PhaseSpaceGrid
 from fpsolve.schemes import drift_kick, semi_lagrangian
 from fpsolve.solve import solve
@@ -27,7 +28,7 @@ KERNELS = {
     name: function
     for module in MODULES
     for name, function in vars(module).items()
-    if isinstance(function, Dispatcher)
+    if isinstance(function, Dispatcher | ParallelKernel)
 }
 SMALL, LARGE = (6, 7, 8), (20, 21, 16)
 
@@ -42,7 +43,7 @@ def called(function, arguments):
 
 CASES = Arguments(SMALL).cases()
 PARALLEL = [
-    name for name, kernel in KERNELS.items() if kernel.targetoptions.get("parallel")
+    name for name, kernel in KERNELS.items() if isinstance(kernel, ParallelKernel)
 ]
 
 

@@ -9,11 +9,12 @@ from numba.core.dispatcher import Dispatcher
 from scipy import stats
 
 from fpsolve._kernels import paths as kernels
+from fpsolve._kernels.compiling import ParallelKernel
 
 KERNELS = {
     name: function
     for name, function in vars(kernels).items()
-    if isinstance(function, Dispatcher)
+    if isinstance(function, Dispatcher | ParallelKernel)
 }
 KEY = (0x243F6A88, 0x85A308D3)
 QUADRATIC = (kernels.QUADRATIC, 1.0, 1.5)
@@ -79,7 +80,7 @@ def cases():
 
 CASES = cases()
 PARALLEL = [
-    name for name, kernel in KERNELS.items() if kernel.targetoptions.get("parallel")
+    name for name, kernel in KERNELS.items() if isinstance(kernel, ParallelKernel)
 ]
 
 

@@ -5,7 +5,9 @@ Lagrange polynomials of 4 points (cubic) or 6 points (quintic) in each direction
 """
 
 import numpy as np
-from numba import njit, prange
+from numba import prange
+
+from fpsolve._kernels.compiling import njit
 
 
 @njit(cache=True, error_model="numpy")

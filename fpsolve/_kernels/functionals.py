@@ -4,9 +4,10 @@ Sums over ξ are left to numpy, so that they do not depend on threads.
 """
 
 import numpy as np
-from numba import njit, prange
+from numba import prange
 from numba.extending import register_jitable
 
+from fpsolve._kernels.compiling import njit
 from fpsolve._kernels.lanes import (
     LANES,
     fused,

@@ -8,7 +8,8 @@ the last harmonic kept at a degree, and everything outside is zero.
 """
 
 import numpy as np
-from numba import njit
+
+from fpsolve._kernels.compiling import njit
 
 
 @njit(cache=True, fastmath={"contract"}, error_model="numpy")

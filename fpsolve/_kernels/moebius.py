@@ -1,7 +1,9 @@
 """Matrices of the angle step R½ D R½ in α-Fourier, one per value of |∇B|."""
 
 import numpy as np
-from numba import njit, prange
+from numba import prange
+
+from fpsolve._kernels.compiling import njit
 
 
 @njit(cache=True, error_model="numpy")

@@ -11,7 +11,9 @@ import math
 from fractions import Fraction
 
 import numpy as np
-from numba import njit, prange
+from numba import prange
+
+from fpsolve._kernels.compiling import njit
 
 LANES = 64
 # Rows of the work array: position, tangent, full turns of the angle.

@@ -8,8 +8,9 @@ brought back. Batches have a fixed size, so that results do not depend on thread
 """
 
 import numpy as np
-from numba import njit, prange
+from numba import prange
 
+from fpsolve._kernels.compiling import njit
 from fpsolve._kernels.lanes import LANES, fused, put, spread, take, transposed
 
 QUADS_PER_BATCH = 4

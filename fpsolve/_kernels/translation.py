@@ -8,8 +8,9 @@ in the flat array.
 """
 
 import numpy as np
-from numba import njit, prange
+from numba import prange
 
+from fpsolve._kernels.compiling import njit
 from fpsolve._kernels.lanes import LANES, put, spread, take
 
 FOUR = 4

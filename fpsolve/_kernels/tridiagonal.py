@@ -5,7 +5,9 @@ and a rank-one part; the elimination factors are the same for every row.
 """
 
 import numpy as np
-from numba import njit, prange
+from numba import prange
+
+from fpsolve._kernels.compiling import njit
 
 
 @njit(cache=True, error_model="numpy")

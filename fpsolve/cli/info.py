@@ -45,12 +45,15 @@ def _cache() -> str:
         for file in folder.glob(pattern)
     ]
     size = sum(file.stat().st_size for file in files)
-    places = ", ".join(map(str, folders)) or "none"
+    if not folders:
+        return "none; set NUMBA_CACHE_DIR to a folder that can be written"
+    places = ", ".join(map(str, folders))
     return f"{places} ({len(files)} files, {size / 2**20:.1f} MiB)"
 
 
 def _cache_folders() -> set[Path]:
-    return {Path(kernel.stats.cache_path) for kernel in _kernels()}
+    paths = (kernel.stats.cache_path for kernel in _kernels())
+    return {Path(path) for path in paths if path is not None}
 
 
 def _kernels() -> Iterator[Any]:
@@ -63,5 +66,6 @@ def _kernels() -> Iterator[Any]:
     package = importlib.import_module("fpsolve._kernels")
     for module in pkgutil.iter_modules(package.__path__, f"{package.__name__}."):
         for value in vars(importlib.import_module(module.name)).values():
-            if isinstance(value, Dispatcher):
-                yield value
+            compiled = getattr(value, "compiled", value)
+            if isinstance(compiled, Dispatcher):
+                yield compiled

@@ -1,0 +1,102 @@
+"""Where compiled kernels cannot be kept they are compiled anew, and it is said once."""
+
+import os
+import runpy
+import subprocess
+import sys
+from pathlib import Path
+
+import numba
+import pytest
+
+KERNELS = """
+from fpsolve._kernels.compiling import njit
+
+
+@njit(cache=True)
+def twice(x):
+    return 2 * x
+
+
+@njit(cache=True)
+def four_times(x):
+    return twice(twice(x))
+"""
+USE = """
+import own_kernels as kernels
+print(kernels.four_times(2.0), kernels.twice(3.0))
+"""
+# A folder that cannot be written, whoever asks.
+READ_ONLY = """
+import tempfile
+def refuse(*arguments, **options):
+    raise OSError(30, "Read-only file system")
+tempfile.TemporaryFile = refuse
+"""
+# A disk on which a file can be made, but nothing be written to it.
+FULL = """
+import resource
+resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0))
+"""
+
+
+@pytest.fixture
+def run(tmp_path):
+    """`run(source)` executes it beside two small kernels; its output, and warnings."""
+    (tmp_path / "own_kernels.py").write_text(KERNELS)
+    environment = {
+        **os.environ,
+        "PYTHONPATH": os.pathsep.join([str(Path(__file__).parents[1]), str(tmp_path)]),
+        "PYTHONDONTWRITEBYTECODE": "1",
+        "NUMBA_CACHE_DIR": str(tmp_path / "cache"),
+    }
+
+    def call(source):
+        found = subprocess.run(
+            [sys.executable, "-c", source], env=environment, capture_output=True,
+            text=True, check=True,
+        )  # fmt: skip
+        return found.stdout.strip(), found.stderr
+
+    return call
+
+
+@pytest.mark.parametrize(
+    ("obstacle", "reason"),
+    [(READ_ONLY, "no locator available"), (FULL, "File too large")],
+    ids=["read-only", "full"],
+)
+def test_kernels_that_cannot_be_kept_are_compiled_anew(run, obstacle, reason):
+    found, told = run(obstacle + USE)
+    assert found == "8.0 6.0"
+    assert told.count("UserWarning") == 1
+    assert reason in told
+    assert "set NUMBA_CACHE_DIR to a folder that can be written" in told
+
+
+def test_a_damaged_cache_is_begun_anew(tmp_path, monkeypatch):
+    source = tmp_path / "own_kernels.py"
+    source.write_text(KERNELS)
+    monkeypatch.setattr(numba.config, "CACHE_DIR", str(tmp_path / "cache"))
+
+    def loaded():
+        """Whether a new process would find what one before it has compiled."""
+        twice = runpy.run_path(str(source))["twice"]
+        assert twice(3.0) == 6.0
+        return bool(twice.stats.cache_hits)
+
+    assert [loaded(), loaded()] == [False, True]
+    for suffix, content in {".nbi": b"no index", ".nbc": b""}.items():
+        (file,) = (tmp_path / "cache").rglob(f"*{suffix}")
+        file.write_bytes(content)
+        assert [loaded(), loaded()] == [False, True]
+
+
+def test_the_command_line_works_where_nothing_can_be_kept(run):
+    found, told = run(
+        READ_ONLY + "from fpsolve.cli import app\napp(['info'], standalone_mode=False)"
+    )
+    assert "none; set NUMBA_CACHE_DIR to a folder that can be written" in found
+    # One line, as every warning of the command line.
+    (line,) = told.splitlines()
+    assert line.startswith("warning: compiled kernels cannot be kept")
