@@ -32,6 +32,7 @@ __all__ = [
     "construct",
     "has_length",
     "shown",
+    "told_apart",
 ]
 
 T = TypeVar("T")
@@ -54,6 +55,16 @@ def shown(value: Any) -> str:
         return text
     kind, shape = type(value).__name__, getattr(value, "shape", None)
     return f"{text[:_LONGEST]}… ({kind})" if shape is None else f"{kind} of {shape}"
+
+
+def told_apart(*numbers: float) -> list[str]:
+    """Return the numbers with as few digits, six at least, as tell them apart."""
+    n_different = len(set(numbers))
+    for digits in range(6, 18):
+        texts = [f"{number:.{digits}g}" for number in numbers]
+        if len(set(texts)) >= n_different:
+            break
+    return texts
 
 
 def check_real(name: str, value: Any) -> float:

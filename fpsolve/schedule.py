@@ -10,14 +10,20 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve._checks import check_integer, check_real, shown
+from fpsolve._checks import check_integer, check_real, shown, told_apart
 
-__all__ = ["Schedule", "make_schedule", "saved_index"]
+__all__ = [
+    "Schedule",
+    "index_of",
+    "make_schedule",
+    "same_arclength",
+    "saved_index",
+]
 
-# Steps and saving points must fit the span to this many steps.
-FIT = 1e-6
-# How far a saved arclength may be from the one asked for, relative.
-SAME = 1e-9
+# How far an arclength may be from the one that is meant: relative to its size, or to 1
+# where it is smaller, which is half a unit of the sixth digit; as a share of the steps,
+# which it must tell apart; and what the rounding of s = start + n ds may leave.
+TYPED, OF_A_STEP, ROUNDED = 5e-6, 1e-3, 8 * 2.0**-52
 # Beyond this many steps s = start + n ds is no longer a different number for each n.
 MOST_STEPS = 2**53
 # Each takes about two kilobytes.
@@ -48,6 +54,11 @@ class Schedule:
         """Arclength after a number of steps."""
         return self.start + step * self.ds
 
+    @property
+    def end(self) -> float:
+        """Arclength after the last step."""
+        return self.s(self.n_steps)
+
     def legs(self) -> Iterator[tuple[int, int]]:
         """Pairs (from, to) of neighbouring records."""
         return zip(self.records[:-1], self.records[1:], strict=True)
@@ -68,8 +79,13 @@ def make_schedule(
     ds: float,
     save_at: Iterable[float] | None = None,
     record_every: int = 1,
+    *,
+    exact: bool = False,
 ) -> Schedule:
     """Steps of a run over `s_span`, checked.
+
+    ds is changed by what is missing to divide the span, at most 5e-6 of it, unless it
+    is to be `exact`.
 
     Raises
     ------
@@ -90,13 +106,14 @@ def make_schedule(
     record_every = check_integer("record_every", record_every, at_least=1)
     check_number_of_steps((end - start) / ds, end - start, ds, record_every)
     n_steps = round((end - start) / ds)
-    if n_steps < 1 or abs(n_steps * ds - (end - start)) > FIT * ds * max(n_steps, 1):
-        n_better = max(1, math.ceil((end - start) / ds - FIT))
+    fits = n_steps > 0 and abs(n_steps * ds - (end - start)) <= TYPED * ds * n_steps
+    if not fits or (exact and not same_arclength(start + n_steps * ds, end, ds)):
+        n_better = max(1, math.ceil((end - start) / ds * (1 - TYPED)))
         raise ValueError(
             f"`ds` must divide the span {end - start:g} into whole steps, got {ds:g}; "
             f"use ds = {(end - start) / n_better:.12g}."
         )
-    ds = (end - start) / n_steps
+    ds = ds if exact else (end - start) / n_steps
     stops = (end,) if save_at is None else checked_stops(save_at)
     saves = tuple(sorted({_step_of(s, start, ds, n_steps) for s in stops}))
     records = sorted({*range(0, n_steps, record_every), n_steps, *saves})
@@ -151,34 +168,67 @@ def _step_of(s: float, start: float, ds: float, n_steps: int) -> int:
         raise ValueError(f"`save_at` must hold finite numbers, got {s:g}.")
     step = round((s - start) / ds)
     if not 0 <= step <= n_steps:
+        first, last, got = told_apart(start, start + n_steps * ds, s)
         raise ValueError(
-            f"`save_at` must lie in the span [{start:g}, {start + n_steps * ds:g}], "
-            f"got {s:g}."
+            f"`save_at` must lie in the span [{first}, {last}], got {got}."
         )
-    if abs(start + step * ds - s) > FIT * max(1, n_steps) * ds:
+    if not same_arclength(start + step * ds, s, ds):
+        got, nearest = told_apart(s, start + step * ds)
         raise ValueError(
-            f"`save_at` must hold multiples of ds = {ds:g} from {start:g}, got {s:g}; "
-            f"the nearest is {start + step * ds:g}."
+            f"`save_at` must hold multiples of ds = {ds:.12g} from {start:g}, got "
+            f"{got}; the nearest is {nearest}."
         )
     return step
 
 
-def saved_index(saved_s: NDArray[np.float64], s: float) -> int:
-    """Which of the saved arclengths is s.
+def same_arclength(known: float, s: float, ds: float = math.inf) -> bool:
+    """Whether s means the arclength `known`, among others that are ds apart.
+
+    The one rule for what a caller types: what `save_at` takes for a step, `density`
+    finds.
+    """
+    size = max(1.0, abs(known))
+    tolerance = max(min(TYPED * size, OF_A_STEP * ds), ROUNDED * abs(known))
+    return abs(known - s) <= tolerance
+
+
+def index_of(known: NDArray[np.float64], s: float, ds: float = math.inf) -> int | None:
+    """Which of some arclengths is s; None if none is.
+
+    Parameters
+    ----------
+    known : ndarray, shape (n,)
+    s : float
+    ds : float
+        Step of the run that they come from, where there is one.
+    """
+    # At infinity every number would be as near as the tolerance.
+    if not (known.size and math.isfinite(s)):
+        return None
+    nearest = int(np.argmin(np.abs(known - s)))
+    apart = float(np.min(np.diff(np.sort(known)), initial=ds))
+    return nearest if same_arclength(float(known[nearest]), s, apart) else None
+
+
+def saved_index(
+    saved_s: NDArray[np.float64],
+    s: float,
+    ds: float = math.inf,
+    remedy: str = "add it to `save_at` of the run",
+) -> int:
+    """Which of the saved arclengths is s; see `same_arclength`.
 
     Raises
     ------
     ValueError
-        If none is, to a relative 1e-9.
+        If none is.
     """
     s = check_real("s", s)
-    # At infinity every number would be as near as the tolerance.
-    if saved_s.size and math.isfinite(s):
-        nearest = int(np.argmin(np.abs(saved_s - s)))
-        if abs(saved_s[nearest] - s) <= SAME * max(1.0, abs(s)):
-            return nearest
-    known = ", ".join(f"{value:g}" for value in saved_s) or "none"
+    found = index_of(saved_s, s, ds)
+    if found is not None:
+        return found
+    *known, got = told_apart(*saved_s.tolist(), s)
     raise ValueError(
-        f"`s` must be one of the saved values {known}, got {s:g}; "
-        "add it to `save_at` of the run."
+        f"`s` must be one of the saved values {', '.join(known) or 'none'}, got {got}; "
+        f"{remedy}."
     )

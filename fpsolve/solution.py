@@ -117,7 +117,7 @@ class Solution:
         ValueError
             If no density was saved at s.
         """
-        found: Array = self.densities[saved_index(self.saved_s, s)]
+        found: Array = self.densities[saved_index(self.saved_s, s, self.ds)]
         return found
 
     @property

@@ -144,6 +144,7 @@ def solve(
     tolerances = Tolerances(mass_tolerance, boundary_tolerance, negative_tolerance)
     save_at = None if save_at is None else tuple(checked_stops(save_at))
     schedule = make_schedule(s_span, ds, save_at, record_every)
+    scheme.model.curve.check_span(schedule.start, schedule.end)
     # Two for writing, where saved densities do not stay. The first of two passes
     # leaves its initial density.
     n_kept = len(schedule.saves) if checkpoint is None else 2
@@ -157,10 +158,10 @@ def solve(
         negative_tolerance=negative_tolerance,
     )  # fmt: skip
     with (
+        threads_worth_their_wait(p0.size),
         _keepers(checkpoint, scheme, p0, reference, arguments) as keepers,
         reporting(progress) as report,
         announced_compilation(bool(progress)),
-        threads_worth_their_wait(p0.size),
     ):
         begin = partial(Run, scheme, p0, reference, tolerances, arguments)
         return _completed(begin, keepers, schedule, extrapolate, report)

@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from fpsolve import initial
 from fpsolve.curves import (
     EllipticNozzle,
     FixedBelt,
@@ -17,6 +18,12 @@ from fpsolve.curves import (
     TabulatedCurve,
     curve_from_dict,
 )
+from fpsolve.grids import PhaseSpaceGrid
+from fpsolve.models import LayDownModel
+from fpsolve.paths import sample_paths
+from fpsolve.potentials import QuadraticPotential
+from fpsolve.schemes import drift_kick, semi_lagrangian
+from fpsolve.solve import solve
 
 TABLE_S = np.linspace(-10.0, 1010.0, 2041)
 NAMED = [
@@ -208,6 +215,66 @@ def test_a_table_of_one_point_is_fixed():
 def test_the_rounded_end_of_a_table_is_inside():
     curve = TabulatedCurve([0.0, 1.0], [0.0, 0.0], [0.0, 1.0])
     assert curve.position(1.0 + 1e-12)[1] == pytest.approx(1.0, abs=2e-12)
+
+
+LATE = np.linspace(5.0, 7.0, 9)
+
+
+@pytest.mark.parametrize("height", [0.0, 0.3], ids=["of one point", "of a curve"])
+def test_a_table_that_begins_late_is_one_that_begins_at_zero_later(height):
+    grid = PhaseSpaceGrid(5.0, (8, 8, 8))
+    p0 = initial.gaussian(grid, (0.3, 0.0), 1.0)
+
+    def run(scheme, s, **options):
+        curve = TabulatedCurve(s, 0.2 + 0.0 * s, height * np.sin(s - s[0]))
+        model = LayDownModel(QuadraticPotential(), 1.0, curve)
+        span = float(s[0]), float(s[0]) + 1.0
+        density = solve(
+            scheme(model, grid, **options),
+            p0,
+            span,
+            0.25,
+            boundary_tolerance=1.0,
+            mass_tolerance=1.0,
+        ).final
+        paths = sample_paths(model, 3, span[1], 0.25, seed=1, s_start=span[0])
+        return density, paths.xi
+
+    for scheme, options in (
+        (drift_kick, {"balanced": True}),
+        (semi_lagrangian, {"adjusted": False}),
+    ):
+        late, early = run(scheme, LATE, **options), run(scheme, LATE - 5.0, **options)
+        for one, other in zip(late, early, strict=True):
+            # Arclengths up to 7 are rounded to 9e-16 at every step.
+            np.testing.assert_allclose(one, other, rtol=0, atol=1e-13)
+
+
+@pytest.mark.parametrize("speed", [0.0, 0.1])
+def test_a_run_that_leaves_its_table_is_refused_before_it_begins(speed, tmp_path):
+    curve = TabulatedCurve(LATE, -speed * LATE, 0.0 * LATE)
+    model = LayDownModel(QuadraticPotential(), 1.0, curve)
+    grid = PhaseSpaceGrid(5.0, (8, 8, 8))
+    p0 = initial.gaussian(grid, (0.0, 0.0), 1.0)
+    folder = tmp_path / "checkpoint"
+    for start, end in ((0.0, 1.0), (6.5, 7.5), (4.5, 5.5)):
+        both = (
+            rf"from s = {start:g} to {end:g}, .* a table from 5 to 7; extend the table"
+        )
+        with pytest.raises(ValueError, match=both):
+            solve(drift_kick(model, grid), p0, (start, end), 0.25, checkpoint=folder)
+        with pytest.raises(ValueError, match=both):
+            sample_paths(model, 3, end, 0.25, seed=1, s_start=start)
+    assert not folder.exists()
+    paths = sample_paths(model, 3, 6.0, 0.25, seed=1, s_start=5.0)
+    with pytest.raises(ValueError, match=r"from s = 5 to 8, .* from 5 to 7;"):
+        paths.continued(8.0)
+
+
+def test_a_table_of_one_point_stands_still_at_every_arclength():
+    curve = TabulatedCurve(LATE, 1.0 + 0.0 * LATE, 2.0 + 0.0 * LATE)
+    assert curve.displacement(0.0, 1.0) == (0.0, 0.0)
+    assert np.array_equal(curve.velocity([0.0, 6.0]), np.zeros((2, 2)))
 
 
 def test_a_table_is_described_not_printed():

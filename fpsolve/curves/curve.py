@@ -49,6 +49,12 @@ class Curve(ABC):
     def displacement(self, s0: float, s1: float) -> tuple[float, float]:
         """γ(s1) - γ(s0), without the cancellation of two large positions."""
 
+    def check_span(self, start: float, end: float) -> None:  # noqa: B027
+        """Raise ValueError unless γ is known from start to end; it always is here.
+
+        Called before every run. A curve that has an end says so.
+        """
+
     @property
     @abstractmethod
     def autonomous(self) -> bool:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from fpsolve._arrays import check_numbers
+from fpsolve._checks import told_apart
 from fpsolve.curves.curve import Curve, check_speed
 
 if TYPE_CHECKING:
@@ -41,6 +42,7 @@ class TabulatedCurve(Curve):
     ValueError
         If the table is ragged, too short, not finite or not increasing, or if its mean
         speed is not below one; later, when the curve is asked outside the table.
+        `solve` and `sample_paths` refuse a run that leaves it before they begin.
     """
 
     s: tuple[float, ...]
@@ -64,13 +66,30 @@ class TabulatedCurve(Curve):
         return self._components(self._spline, s)
 
     def velocity(self, s: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """(γ1'(s), γ2'(s)) of the spline."""
+        """(γ1'(s), γ2'(s)) of the spline; 0 for every s if all points are the same."""
+        if self.fixed:
+            return np.zeros(np.shape(s)), np.zeros(np.shape(s))
         return self._components(self._spline_derivative, s)
 
     def displacement(self, s0: float, s1: float) -> tuple[float, float]:
-        """γ(s1) - γ(s0), exact to the rounding of the tabulated positions."""
+        """γ(s1) - γ(s0), exact to the rounding of the tabulated positions.
+
+        0 for every s if all points are the same.
+        """
+        if self.fixed:
+            return 0.0, 0.0
         (begin1, begin2), (end1, end2) = self.position(s0), self.position(s1)
         return float(end1 - begin1), float(end2 - begin2)
+
+    def check_span(self, start: float, end: float) -> None:
+        """Raise ValueError unless the table covers [start, end], up to rounding."""
+        if not np.all(self._covered(np.array([start, end]))):
+            first, last, *run = told_apart(self.s[0], self.s[-1], start, end)
+            raise ValueError(
+                f"`curve` must be known from s = {run[0]} to {run[1]}, where the run "
+                f"goes, got a table from {first} to {last}; extend the table, or move "
+                "the run into it."
+            )
 
     @property
     def autonomous(self) -> bool:
@@ -80,7 +99,7 @@ class TabulatedCurve(Curve):
     @property
     def fixed(self) -> bool:
         """Whether all points are the same."""
-        return len(set(self.gamma1)) == 1 and len(set(self.gamma2)) == 1
+        return self._still
 
     @property
     def formula(self) -> str:
@@ -102,6 +121,10 @@ class TabulatedCurve(Curve):
         return f"TabulatedCurve(<{len(self.s)} points, {ends}>)"
 
     @cached_property
+    def _still(self) -> bool:
+        return len(set(self.gamma1)) == 1 and len(set(self.gamma2)) == 1
+
+    @cached_property
     def _spline(self) -> CubicSpline:
         from scipy.interpolate import CubicSpline
 
@@ -120,16 +143,20 @@ class TabulatedCurve(Curve):
 
     def _checked_arclength(self, s: ArrayLike) -> NDArray[np.float64]:
         arclength = check_numbers("s", s)
-        first, last = self.s[0], self.s[-1]
-        slack = _ROUNDING * (last - first)
-        inside = (arclength >= first - slack) & (arclength <= last + slack)
+        inside = self._covered(arclength)
         if not np.all(inside):
             outside = float(arclength[~inside].flat[0])
+            first, last, got = told_apart(self.s[0], self.s[-1], outside)
             raise ValueError(
-                f"`s` must lie in the table, which covers [{first:g}, {last:g}], got "
-                f"{outside:g}; extend the table."
+                f"`s` must lie in the table, which covers [{first}, {last}], got "
+                f"{got}; extend the table."
             )
         return arclength
+
+    def _covered(self, s: NDArray[np.float64]) -> NDArray[np.bool_]:
+        first, last = self.s[0], self.s[-1]
+        slack = _ROUNDING * (last - first)
+        return (s >= first - slack) & (s <= last + slack)
 
 
 def _checked_columns(columns: dict[str, ArrayLike]) -> dict[str, NDArray[np.float64]]:

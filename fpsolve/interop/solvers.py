@@ -132,6 +132,7 @@ class Stepper:
         if not self._continues(field, t_start):
             self._restart(field, t_start)
         n_steps = steps_between(t_start, t_end, self.dt)
+        self.scheme.model.curve.check_span(t_start, t_start + n_steps * self.dt)
         self.scheme.advance(self.state, t_start, self.dt, n_steps)
         self.n_steps += n_steps
         self.info["steps"] += n_steps

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve._checks import check_integer, check_real
+from fpsolve._checks import check_integer
 from fpsolve.grids import PhaseSpaceGrid, check_grid
 from fpsolve.models import LayDownModel
 from fpsolve.paths.averages import Observable, observed, time_averages
@@ -19,6 +19,7 @@ from fpsolve.paths.ensemble import Ensemble, angle_of
 from fpsolve.paths.histogram import Histogram, count_paths, wrapped
 from fpsolve.paths.moments import Moments
 from fpsolve.paths.trajectory import Trajectory, trajectory
+from fpsolve.schedule import saved_index
 
 if TYPE_CHECKING:
     import xarray
@@ -314,12 +315,5 @@ class Paths:
         """Index of a saved s."""
         if s is None and len(self.s):
             return len(self.s) - 1
-        wanted = np.nan if s is None else check_real("s", s)
-        for index, saved in enumerate(self.s):
-            if abs(saved - wanted) <= 1e-9 * max(1.0, abs(saved)):
-                return index
-        known = ", ".join(f"{value:g}" for value in self.s) or "none"
-        raise ValueError(
-            f"`s` must be one of the saved values {known}, got {wanted:g}; add it to "
-            "`save_at`."
-        )
+        wanted = np.nan if s is None else s
+        return saved_index(np.asarray(self.s), wanted, self.ds, "add it to `save_at`")

@@ -124,6 +124,7 @@ def sample_paths(
     check_one_of("method", method, METHODS)
     check_histogram(histogram)
     schedule = stepwise(s_start, s_end, ds, save_at)
+    model.curve.check_span(schedule.start, schedule.end)
     ensemble = Ensemble(
         model=model,
         n_paths=n_paths,
@@ -157,6 +158,7 @@ def go_on(
             f"`s_end` must be beyond the end {reached:g} of the paths, got {s_end:g}."
         )
     schedule = stepwise(before.start, s_end, before.ds, save_at)
+    paths.ensemble.model.curve.check_span(schedule.start, schedule.end)
     if schedule.saves and schedule.saves[0] <= before.n_steps:
         raise ValueError(
             f"`save_at` must lie beyond the end {reached:g} of the paths, got "
@@ -337,8 +339,8 @@ def stepwise(
 ) -> Schedule:
     """Steps of exactly ds, whatever the end: a path must not depend on it."""
     span = check_real("s_start", s_start), check_real("s_end", s_end)
-    schedule = make_schedule(span, ds, save_at, record_every=sys.maxsize)
-    return replace(schedule, ds=float(ds), records=())
+    schedule = make_schedule(span, ds, save_at, record_every=sys.maxsize, exact=True)
+    return replace(schedule, records=())
 
 
 def check_histogram(grid: Any) -> None:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve._checks import check_kind
+from fpsolve._checks import check_kind, told_apart
 from fpsolve.plotting.style import (
     COLOURS,
     PAGE,
@@ -16,6 +16,7 @@ from fpsolve.plotting.style import (
     paper_style,
     parameters,
 )
+from fpsolve.schedule import index_of
 from fpsolve.studies.agreement import CrossCheck
 
 if TYPE_CHECKING:
@@ -100,10 +101,12 @@ def _rows(check: CrossCheck, at: Iterable[float] | None) -> list[int]:
 
 
 def _row_of(check: CrossCheck, s: float) -> int:
-    row = int(np.argmin(np.abs(check.s - s)))
-    if abs(check.s[row] - s) > 1e-9 * max(1.0, abs(s)):
-        known = ", ".join(f"{value:g}" for value in check.s)
-        raise ValueError(f"`at` must hold compared arclengths {known}, got {s:g}.")
+    row = index_of(check.s, s)
+    if row is None:
+        *known, got = told_apart(*check.s.tolist(), s)
+        raise ValueError(
+            f"`at` must hold compared arclengths {', '.join(known)}, got {got}."
+        )
     return row
 
 

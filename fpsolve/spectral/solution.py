@@ -8,8 +8,10 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from fpsolve._checks import told_apart
 from fpsolve.grids import PhaseSpaceGrid
 from fpsolve.models import LayDownModel
+from fpsolve.schedule import index_of
 from fpsolve.spectral import quadrature
 from fpsolve.spectral.expansion import Expansion
 from fpsolve.spectral.quadratic import quadratic
@@ -80,12 +82,12 @@ class SpectralSolution:
         ValueError
             If s is not one of `s`.
         """
-        nearest = int(np.argmin(np.abs(self.s - s)))
-        if not abs(self.s[nearest] - s) <= 1e-9 * max(1.0, abs(s)):
-            known = ", ".join(f"{value:g}" for value in self.s)
-            raise ValueError(f"`s` must be one of {known}, got {s:g}.")
+        place = index_of(self.s, s)
+        if place is None:
+            *known, got = told_apart(*self.s.tolist(), s)
+            raise ValueError(f"`s` must be one of {', '.join(known)}, got {got}.")
         potential = quadratic(self.model)
-        return quadrature.density_on(self._expansions[nearest], grid, potential)
+        return quadrature.density_on(self._expansions[place], grid, potential)
 
     @cached_property
     def steady_state(self) -> SpectralSteadyState:

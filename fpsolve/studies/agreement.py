@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from fpsolve.grids import PhaseSpaceGrid
 from fpsolve.models import LayDownModel
+from fpsolve.schedule import index_of
 
 if TYPE_CHECKING:
     import xarray
@@ -158,8 +159,9 @@ class CrossCheck:
         ValueError
             If there is none.
         """
+        place = index_of(np.array(self.s), s)
         for test in self.tests:
-            if test.name == name and abs(test.s - s) <= 1e-9 * max(1.0, abs(s)):
+            if test.name == name and place is not None and test.s == self.s[place]:
                 return test
         known = ", ".join(repr(test) for test in self.detectable)
         places = ", ".join(f"{place:g}" for place in self.s)

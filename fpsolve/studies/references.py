@@ -11,7 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fpsolve import functionals
+from fpsolve._checks import told_apart
 from fpsolve.models import LayDownModel
+from fpsolve.schedule import index_of
 from fpsolve.solution import Solution
 from fpsolve.steady_state import SteadyState
 
@@ -27,8 +29,6 @@ __all__ = [
 Array = NDArray[np.float64]
 
 MOMENTS = (*functionals.MOMENTS, "mean_square")
-# Arclengths closer than this, relative to their size, are the same.
-SAME = 1e-9
 
 
 @dataclass(frozen=True)
@@ -72,8 +72,9 @@ def places(
         chosen = np.array([one for one in density.saved_s if _among(one, available)])
     missing = [float(one) for one in chosen if not _among(one, available)]
     if missing or not chosen.size:
-        saved = ", ".join(f"{one:g}" for one in available)
-        wanted = ", ".join(f"{one:g}" for one in missing) or "none in common"
+        texts = told_apart(*missing, *available)
+        wanted = ", ".join(texts[: len(missing)]) or "none in common"
+        saved = ", ".join(texts[len(missing) :])
         raise ValueError(
             f"`s` must be saved by density and paths, got {wanted} and paths at "
             f"{saved}; name the same arclengths in `save_at` of both."
@@ -130,7 +131,7 @@ def model_of(density: Solution | SteadyState, paths: Any) -> LayDownModel | None
 
 
 def _among(s: float, available: Array) -> bool:
-    return bool(np.any(np.abs(available - s) <= SAME * max(1.0, abs(s))))
+    return index_of(available, s) is not None
 
 
 def _recorded(

@@ -83,11 +83,11 @@ class EnergySolution:
         ValueError
             If nothing was saved at s.
         """
-        return np.asarray(self.densities[saved_index(self.saved_s, s)])
+        return np.asarray(self.densities[saved_index(self.saved_s, s, self.ds)])
 
     def mass(self, s: float) -> Array:
         """Cell masses at a saved s, shape (n_cells,); ValueError if none were saved."""
-        return np.asarray(self.masses[saved_index(self.saved_s, s)])
+        return np.asarray(self.masses[saved_index(self.saved_s, s, self.ds)])
 
     def mean(self, s: float) -> float:
         """E G at a saved s; of |G| on an unsigned grid."""

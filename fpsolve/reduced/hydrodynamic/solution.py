@@ -131,7 +131,7 @@ class HydrodynamicSolution:
         ValueError
             If no density was saved at s.
         """
-        found: Array = self.densities[saved_index(self.saved_s, s)]
+        found: Array = self.densities[saved_index(self.saved_s, s, self.ds)]
         return found
 
     def entropy_rate(self, window: tuple[float, float] | None = None) -> DecayRate:
