@@ -7,6 +7,22 @@ from fpsolve._kernels.compiling import njit
 
 
 @njit(cache=True, error_model="numpy")
+def first_of_group(ordered, relative, absolute, out):
+    """out[k]: value k exceeds the first of the group before it by more than allowed.
+
+    ordered (n,), ascending, infinity included; allowed is the larger of `relative`
+    times the first of the group and `absolute`. Groups do not grow by links: their
+    width is bounded. out (n,), boolean.
+    """
+    first = -np.inf
+    for k in range(ordered.size):
+        # The first is one even where it is NaN: every value has a group.
+        out[k] = k == 0 or ordered[k] > first + max(relative * first, absolute)
+        if out[k]:
+            first = ordered[k]
+
+
+@njit(cache=True, error_model="numpy")
 def moebius_powers(a, n_modes, out):
     """out[m, n] = [zⁿ] ((z − a)/(1 − a z))^m: a point moved by the angle equation.
 

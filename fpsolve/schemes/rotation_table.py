@@ -8,14 +8,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fpsolve._kernels.lanes import LANES
-from fpsolve._kernels.moebius import rotation_matrices
+from fpsolve._kernels.moebius import first_of_group, rotation_matrices
 from fpsolve._kernels.rotation import QUADS_PER_BATCH
 
 Array = NDArray[np.float64]
 
-# Values of |∇B| closer than this, relative to the largest, share a matrix: they
-# differ by rounding only (mirror images of a cell).
+# Values of |∇B| that are closer than this, relative to the smallest of them, share a
+# matrix: they differ by rounding only (mirror images of a cell). So do those that turn
+# the angle by less than rounding in a step.
 SAME_STRENGTH = 1e-13
+SAME_TURN = 1e-18
 # A table may hold this many densities; above, matrices are interpolated.
 LARGEST_TABLE = 3.0
 # Chebyshev nodes per interval of ψ = arccos tanh(|∇B| ds/4), in which the entries
@@ -75,7 +77,8 @@ def rotation_table(
     half = n_alpha // 2
     heat = np.exp(-diffusivity * ds * np.arange(half) ** 2)
     damping = float(np.exp(-diffusivity * ds * half**2))
-    new = np.diff(ordered, prepend=-np.inf) > SAME_STRENGTH * max(ordered[-1], 1e-300)
+    new = np.empty(ordered.size, dtype=np.bool_)
+    first_of_group(ordered, SAME_STRENGTH, SAME_TURN / max(abs(ds), SAME_TURN), new)
     if np.count_nonzero(new) * half**2 <= LARGEST_TABLE * strength.size * n_alpha:
         matrix_of = np.cumsum(new) - 1
         angles = opening(ordered[new], ds)
