@@ -22,6 +22,7 @@ from fpsolve._checks import (
 )
 from fpsolve.grids import PhaseSpaceGrid, check_grid
 from fpsolve.potentials import Potential
+from fpsolve.potentials.at_points import value_at
 
 __all__ = ["equilibrium", "from_function", "gaussian"]
 
@@ -116,7 +117,7 @@ def equilibrium(grid: PhaseSpaceGrid, potential: Potential) -> NDArray[np.float6
     """
     check_grid(grid)
     check_kind("potential", potential, Potential, "for instance QuadraticPotential()")
-    value = potential.value(*grid.plane())
+    value = value_at(potential, *grid.plane())
     # Only differences of B matter here, and the shift keeps exp from underflowing.
     weight = np.exp(value.min() - value)
     return _normalised(grid, np.broadcast_to(weight[:, :, None], grid.shape))

@@ -11,6 +11,7 @@ from fpsolve._checks import check_real
 from fpsolve.grids import PhaseSpaceGrid, check_grid
 from fpsolve.models import LayDownModel, check_model
 from fpsolve.potentials import Potential
+from fpsolve.potentials.at_points import gradient_at, value_at
 
 __all__ = ["SuggestedGrid", "SuggestedStep", "suggest_grid", "suggest_step"]
 
@@ -201,10 +202,13 @@ def splitting_coefficient(model: LayDownModel, mean_force: float) -> float:
 def mean_square_force(model: LayDownModel, grid: PhaseSpaceGrid) -> float:
     """∫ |∇B|² e^{−B} dξ / ∫ e^{−B} dξ on the grid."""
     xi1, xi2 = grid.plane()
-    potential = model.potential.value(xi1, xi2)
-    force1, force2 = model.potential.gradient(xi1, xi2)
+    potential = value_at(model.potential, xi1, xi2)
+    force1, force2 = gradient_at(model.potential, xi1, xi2)
     weight = np.exp(potential.min() - potential)
-    return float((weight * (force1**2 + force2**2)).sum() / weight.sum())
+    with np.errstate(over="ignore"):
+        # A square that overflows counts only where there is weight.
+        squared = np.where(weight > 0, force1**2 + force2**2, 0.0)
+        return float((weight * squared).sum() / weight.sum())
 
 
 def feature_width(model: LayDownModel) -> float:

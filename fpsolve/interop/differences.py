@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from fpsolve.grids import PhaseSpaceGrid
 from fpsolve.models import LayDownModel
 from fpsolve.planes import PlaneGrid
+from fpsolve.potentials.at_points import gradient_at, value_at
 
 __all__ = [
     "phase_space_rate",
@@ -25,6 +26,9 @@ __all__ = [
 ]
 
 Array = NDArray[np.float64]
+
+# e^{−B} may fall by e^{−600} from the centre of a cell to its face, not by more.
+MOST_STEEP = 600.0
 
 
 def phase_space_rate(
@@ -100,9 +104,8 @@ def plane_drift(model: LayDownModel, grid: PlaneGrid) -> tuple[Array, Array]:
     strength = model.noise**-2
     xi1, xi2 = grid.mesh()
     face1, face2 = 0.5 * (xi1[1:] + xi1[:-1]), 0.5 * (xi2[:, 1:] + xi2[:, :-1])
-    n1, n2 = grid.shape
-    slope1 = np.broadcast_to(model.potential.gradient(face1, xi2)[0], (n1 - 1, n2))
-    slope2 = np.broadcast_to(model.potential.gradient(xi1, face2)[1], (n1, n2 - 1))
+    slope1 = gradient_at(model.potential, face1, xi2, "face")[0]
+    slope2 = gradient_at(model.potential, xi1, face2, "face")[1]
     return strength * slope1 - model.belt_speed, strength * slope2
 
 
@@ -155,16 +158,24 @@ def _face_ratios(
     """
     xi1, xi2 = grid.plane()
     d1, d2, _ = grid.spacing
-    shape = grid.shape[:2]
 
     def value(x1: Array, x2: Array) -> Array:
-        return np.asarray(model.potential.value(x1, x2))
+        # A copy: the ends are overwritten below.
+        return value_at(model.potential, x1, x2, "face").copy()
 
-    centre = np.broadcast_to(value(xi1, xi2), shape)
+    centre = value_at(model.potential, xi1, xi2)
     upper1, lower1 = value(xi1 + d1 / 2, xi2), value(xi1 - d1 / 2, xi2)
     upper2, lower2 = value(xi1, xi2 + d2 / 2), value(xi1, xi2 - d2 / 2)
     upper1[-1] = lower1[0] = 0.5 * (upper1[-1] + lower1[0])
     upper2[:, -1] = lower2[:, 0] = 0.5 * (upper2[:, -1] + lower2[:, 0])
+    steepest = max(
+        float((centre - face).max()) for face in (upper1, lower1, upper2, lower2)
+    )
+    if not steepest < MOST_STEEP:
+        raise ValueError(
+            f"`grid` must resolve exp(-B), got B that changes by {steepest:.2g} in "
+            "half a cell; take more cells, or a smaller `half_width`."
+        )
     ratios = (np.exp(centre - face) for face in (upper1, lower1, upper2, lower2))
     upper1, lower1, upper2, lower2 = (ratio[:, :, None] for ratio in ratios)
     return upper1, lower1, upper2, lower2

@@ -124,7 +124,7 @@ class CallablePotential(Potential):
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """(∂B/∂ξ1, ∂B/∂ξ2), two float64 arrays in the broadcast shape."""
         shape = np.broadcast_shapes(np.shape(xi1), np.shape(xi2))
-        slope1, slope2 = self._gradient(_array(xi1), _array(xi2))
+        slope1, slope2 = self._gradient(*_arrays(xi1, xi2))
         return _filled(slope1, shape), _filled(slope2, shape)
 
     @property
@@ -150,6 +150,13 @@ def _array(values: ArrayLike) -> NDArray[np.float64]:
     return np.asarray(values, dtype=np.float64)
 
 
+def _arrays(*coordinates: ArrayLike) -> tuple[NDArray[np.float64], ...]:
+    # Of one shape, as when the functions were probed: one that stacks its arguments,
+    # or returns ∇B as one array, works on the plane too.
+    shape = np.broadcast_shapes(*map(np.shape, coordinates))
+    return tuple(np.broadcast_to(_array(values), shape) for values in coordinates)
+
+
 def _filled(values: ArrayLike, shape: tuple[int, ...]) -> NDArray[np.float64]:
     # A user's function may return a constant where the formula has no variable.
     return np.array(np.broadcast_to(_array(values), shape))
@@ -159,7 +166,7 @@ def _as_float(
     function: Callable[..., ArrayLike], *coordinates: ArrayLike
 ) -> NDArray[np.float64]:
     shape = np.broadcast_shapes(*map(np.shape, coordinates))
-    return _filled(function(*map(_array, coordinates)), shape)
+    return _filled(function(*_arrays(*coordinates)), shape)
 
 
 def _name(function: Callable[..., Any]) -> str:

@@ -18,6 +18,7 @@ from fpsolve._kernels.characteristics import (
 from fpsolve.errors import MassCorrectionError
 from fpsolve.grids import PhaseSpaceGrid
 from fpsolve.models import LayDownModel
+from fpsolve.potentials.at_points import gradient_at
 from fpsolve.schemes.characteristics import Characteristics, Feet
 from fpsolve.schemes.form import DensityForm, State
 
@@ -101,12 +102,7 @@ class AdjustedAdvection:
         self.points, self.limited = interpolation_order, bool(limited)
         self.perturbation, self.adjusted = perturbation, bool(adjusted)
         self.characteristics = Characteristics(model, grid, form.weight is not None)
-        xi1, xi2 = grid.plane()
-        shape = grid.shape[:2]
-        self.force = tuple(
-            np.ascontiguousarray(np.broadcast_to(component, shape))
-            for component in model.potential.gradient(xi1, xi2)
-        )
+        self.force = gradient_at(model.potential, *grid.plane())
 
     @property
     def n_arrays(self) -> float:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from fpsolve.grids import PhaseSpaceGrid
 from fpsolve.models import LayDownModel
+from fpsolve.potentials.at_points import gradient_at
 
 Array = NDArray[np.float64]
 
@@ -50,6 +51,11 @@ class Characteristics:
     grid : PhaseSpaceGrid
     balanced : bool
         Reaction of h = e^{B} p, instead of p.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If ∇B is no pair of finite numbers on the way to a foot.
     """
 
     def __init__(
@@ -133,7 +139,7 @@ class Characteristics:
         self, xi1: Array, xi2: Array, alpha: Array, s: float
     ) -> tuple[Array, ...]:
         cosine, sine = np.cos(alpha), np.sin(alpha)
-        force1, force2 = self.model.potential.gradient(xi1, xi2)
+        force1, force2 = gradient_at(self.model.potential, xi1, xi2, "foot")
         turn = force1 * sine - force2 * cosine
         if self.balanced:
             speed1, speed2 = self.model.curve.velocity(s)

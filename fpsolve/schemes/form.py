@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from fpsolve._kernels.functionals import row_sums, scale_rows
 from fpsolve.grids import PhaseSpaceGrid
 from fpsolve.models import LayDownModel
+from fpsolve.potentials.at_points import value_at
 
 Array = NDArray[np.float64]
 
@@ -123,6 +124,6 @@ def plain_form(grid: PhaseSpaceGrid) -> DensityForm:
 
 def balanced_form(model: LayDownModel, grid: PhaseSpaceGrid) -> DensityForm:
     """p = e^{−B} h: the equilibrium is h = const, kept to rounding when v = 0."""
-    potential = np.broadcast_to(model.potential.value(*grid.plane()), grid.shape[:2])
+    potential = value_at(model.potential, *grid.plane())
     depth = np.minimum(potential - potential.min(), DEEPEST)
     return DensityForm(grid, np.exp(-depth))

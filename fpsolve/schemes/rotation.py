@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from fpsolve._kernels.rotation import rotate
 from fpsolve.grids import PhaseSpaceGrid
 from fpsolve.models import LayDownModel
+from fpsolve.potentials.at_points import gradient_at
 from fpsolve.schemes.rotation_table import (
     LARGEST_TABLE,
     RotationTable,
@@ -41,8 +42,8 @@ class RotationDiffusion:
 
     Raises
     ------
-    ValueError
-        If n_alpha is odd.
+    TypeError, ValueError
+        If n_alpha is odd, or ∇B not a finite pair on the grid.
     """
 
     def __init__(
@@ -56,9 +57,7 @@ class RotationDiffusion:
         self.model, self.grid = model, grid
         self.balanced, self.positive = balanced, positive
         xi1, xi2 = grid.plane()
-        force1, force2 = model.potential.gradient(xi1, xi2)
-        shape = grid.shape[:2]
-        self.force = (np.broadcast_to(force1, shape), np.broadcast_to(force2, shape))
+        self.force = gradient_at(model.potential, xi1, xi2)
         self.strength = np.hypot(*self.force).ravel()
         angle = np.arctan2(self.force[1], self.force[0]).ravel()
         self.direction = np.stack([np.cos(angle), np.sin(angle)])

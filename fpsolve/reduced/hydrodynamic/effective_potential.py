@@ -10,12 +10,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from fpsolve.models import LayDownModel
+from fpsolve.planes import PlaneGrid
 from fpsolve.potentials import (
     LinearPotential,
     Potential,
     PowerPotential,
     QuadraticPotential,
 )
+from fpsolve.potentials.at_points import value_at
 from fpsolve.potentials.partition import partition_function_of
 
 __all__ = ["EffectivePotential", "check_limit"]
@@ -45,6 +47,11 @@ class EffectivePotential:
     def value(self, xi1: ArrayLike, xi2: ArrayLike) -> Array:
         """Φ, in the broadcast shape of the arguments."""
         return np.asarray(self.potential.value(xi1, xi2) - np.multiply(self.pull, xi1))
+
+    def on(self, plane: PlaneGrid) -> Array:
+        """Φ in the cells of a plane, finite; ValueError otherwise."""
+        xi1, xi2 = plane.mesh()
+        return value_at(self.potential, xi1, xi2) - np.multiply(self.pull, xi1)
 
     def gradient(self, xi1: ArrayLike, xi2: ArrayLike) -> tuple[Array, Array]:
         """∇Φ, two arrays in the broadcast shape."""

@@ -100,7 +100,7 @@ class HydrodynamicLimit:
         See `scharfetter_gummel.generator` for what is exact.
         """
         plane = plane_of(grid)
-        return generator(self._phi.value(*plane.mesh()), plane.spacing, self.epsilon)
+        return generator(self._phi.on(plane), plane.spacing, self.epsilon)
 
     @one_blas_thread()
     def steady_state(
@@ -118,7 +118,7 @@ class HydrodynamicLimit:
         """
         plane = plane_of(grid)
         boundary_tolerance = check_tolerance("boundary_tolerance", boundary_tolerance)
-        masses = gibbs_masses(self._phi.value(*plane.mesh()))
+        masses = gibbs_masses(self._phi.on(plane))
         residual = float(np.abs(self.generator(plane) @ masses.ravel()).sum())
         share = diagnostics.ring_share(masses)
         if not share <= boundary_tolerance:

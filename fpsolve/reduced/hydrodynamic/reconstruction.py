@@ -12,6 +12,7 @@ from fpsolve._checks import check_positive, shown
 from fpsolve.grids import PhaseSpaceGrid
 from fpsolve.planes import PlaneGrid
 from fpsolve.potentials import Potential
+from fpsolve.potentials.at_points import value_at
 
 __all__ = ["balanced_gradient", "reconstruct"]
 
@@ -81,7 +82,7 @@ def balanced_gradient(
 
     At the walls differences are one-sided, of order 2 like the others.
     """
-    b = potential.value(*plane.mesh())
+    b = value_at(potential, *plane.mesh())
     return (
         _derivative(density, b, plane.spacing[0], 0),
         _derivative(density, b, plane.spacing[1], 1),

@@ -22,6 +22,8 @@ Array = NDArray[np.float64]
 # The shift, below the eigenvalue 0 by this share of the diagonal: far enough for a
 # stable factorisation, close enough for the smallest rates to be found first.
 _SHIFT = 1e-7
+# The largest rate counts up to this multiple of its mean over 𝒫_S.
+_WALL = 100.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,7 +130,9 @@ def slowest_modes(generator: Any, root: Array, n: int) -> tuple[Array, Array]:
     from scipy.sparse.linalg import LinearOperator, eigsh, splu
 
     matrix = symmetrised(generator)
-    shift = _SHIFT * float(matrix.diagonal().max())
+    diagonal = matrix.diagonal()
+    # At a steep wall the largest rate says nothing about those of the modes.
+    shift = _SHIFT * float(min(diagonal.max(), _WALL * (root**2 @ diagonal)))
     shifted = csc_array(matrix + shift * eye_array(len(root)))
     factors = splu(
         shifted,
