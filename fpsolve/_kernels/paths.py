@@ -249,6 +249,12 @@ def limit_force(quarter, w):
         return
     for i in range(LANES):
         size = quarter * math.hypot(w[FORCE1 + i], w[FORCE2 + i])
+        if size == math.inf:
+            # A length can overflow where the components do not: without this the
+            # force would become zero. One that is infinite itself becomes NaN.
+            w[FORCE1 + i] *= 1e-100
+            w[FORCE2 + i] *= 1e-100
+            size = quarter * math.hypot(w[FORCE1 + i], w[FORCE2 + i])
         if size > FARTHEST:
             w[FORCE1 + i] *= FARTHEST / size
             w[FORCE2 + i] *= FARTHEST / size

@@ -38,6 +38,8 @@ class Batch(NamedTuple):
     counts : ndarray of int64, shape (n_saved, n1, n2, n_alpha)
     outside : ndarray of int64, shape (n_saved,)
     start, end : ndarray, shape (5, n)
+    n_fast : int
+        Paths that end where a step does not resolve how fast the force turns them.
     """
 
     first: int
@@ -49,6 +51,7 @@ class Batch(NamedTuple):
     outside: NDArray[np.int64]
     start: Array
     end: Array
+    n_fast: int
 
 
 def batches_of(n_paths: int) -> list[tuple[int, int]]:
@@ -122,4 +125,5 @@ class BatchRun:
             # Copies: a view of nothing would keep the whole array alive.
             start=self.start[:, :n_kept].copy(),
             end=self.state[:, :n_kept].copy(),
+            n_fast=self.ensemble.integrator.n_fast(self.state),
         )

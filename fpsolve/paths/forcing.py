@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -16,6 +18,11 @@ from fpsolve.potentials import (
 from fpsolve.potentials.potential import Potential
 
 __all__ = ["compiled_potential", "half_step_shifts"]
+
+# c⁻ⁿ of a power is kept that far from the largest and the smallest number.
+MOST_DECADES = 250.0
+# Powers of ‖ξ‖² up to here are multiplied out.
+LARGEST_EVEN = 64
 
 
 def compiled_potential(potential: Potential) -> tuple[int, float, float] | None:
@@ -37,15 +44,18 @@ def compiled_potential(potential: Potential) -> tuple[int, float, float] | None:
     return None
 
 
-def compiled_power(potential: PowerPotential) -> tuple[int, float, float]:
-    """The kernels' description of (‖ξ‖/c)ⁿ/n."""
+def compiled_power(potential: PowerPotential) -> tuple[int, float, float] | None:
+    """The kernels' description of (‖ξ‖/c)ⁿ/n; None if c⁻ⁿ would over- or underflow."""
     n = potential.exponent
+    if n * abs(math.log10(potential.scale)) > MOST_DECADES:
+        return None
     factor = potential.scale**-n
     if n == 1:
         return kernels.LINEAR, factor, 0.0
     if n == 2:
         return kernels.QUADRATIC, factor, factor
-    return (kernels.POWER if n % 2 else kernels.EVEN_POWER), factor, n
+    multiplied = n % 2 == 0 and n <= LARGEST_EVEN
+    return (kernels.EVEN_POWER if multiplied else kernels.POWER), factor, n
 
 
 def half_step_shifts(

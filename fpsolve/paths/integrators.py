@@ -20,7 +20,7 @@ from fpsolve.errors import NonFinitePathError
 from fpsolve.models import LayDownModel
 from fpsolve.paths.forcing import compiled_potential, half_step_shifts
 
-__all__ = ["METHODS", "Integrator"]
+__all__ = ["LARGEST_TURN", "METHODS", "Integrator"]
 
 Array = NDArray[np.float64]
 Gradient = Callable[[Array], Array]
@@ -31,6 +31,10 @@ METHODS = {
     "heun": kernels.HEUN,
 }
 NO_TRACE = np.zeros((0, kernels.N_STATE, 0))
+# Beyond this |∇B| ds a path is reflected by a step instead of being turned by a force:
+# where many are, no method is of its order any more. For B = ‖ξ‖⁶⁰/60 the splitting is
+# off by 3.5 % in E‖ξ‖² where 3 % are, and by 0.6 % where 0.2 % are.
+LARGEST_TURN = 2.5
 # Normal numbers that one call of the generator gives.
 N_NORMALS = 4
 
@@ -87,6 +91,13 @@ class Integrator(NamedTuple):
         if not math.isfinite(float(state.sum())):
             bad = int(np.argmin(np.isfinite(state).all(axis=0)))
             self._complain(before[:, bad : bad + 1], path + bad, step, n_steps)
+
+    def n_fast(self, state: Array) -> int:
+        """Paths at whose place |∇B| ds is above `LARGEST_TURN`."""
+        with np.errstate(all="ignore"):
+            slopes = self.model.potential.gradient(state[0], state[1])
+            turn = self.ds * np.hypot(*slopes)
+        return int(np.count_nonzero(turn > LARGEST_TURN))
 
     def _take(
         self, state: Array, path: int, step: int, n_steps: int, trace: Array

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+import warnings
 from collections import deque
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
@@ -27,7 +28,7 @@ from fpsolve.models import LayDownModel, check_model
 from fpsolve.paths.batch import Batch, BatchRun, batches_of
 from fpsolve.paths.elsewhere import check_repeats, code_of, run_there
 from fpsolve.paths.ensemble import Ensemble, GivenStart
-from fpsolve.paths.integrators import METHODS
+from fpsolve.paths.integrators import LARGEST_TURN, METHODS
 from fpsolve.paths.laws import PointLaw
 from fpsolve.paths.randomness import seed_number
 from fpsolve.paths.result import Paths
@@ -40,6 +41,8 @@ __all__ = ["go_on", "sample_paths"]
 Array = NDArray[np.float64]
 NOTHING = np.zeros(0, dtype=np.int64)
 CLOCKS = ("wall", "cpu")
+# Paths that may end where a step is too long for the force.
+LARGEST_SHARE = 0.01
 
 
 def sample_paths(
@@ -114,6 +117,12 @@ def sample_paths(
         If the gradient is not finite where a path comes.
     RunInterrupted
         On Ctrl-C, with the finished part of the paths as `.solution`.
+
+    Warns
+    -----
+    UserWarning
+        If |∇B| ds exceeds 2.5 where more than one path in a hundred ends: the method
+        is not of its order there.
 
     References
     ----------
@@ -192,8 +201,22 @@ def completed(
                 run_here(ensemble, states, meter, batches)
             else:
                 run_elsewhere(ensemble, states, meter, batches, client)
+    warn_of_long_steps(ensemble, batches)
     n_total = ensemble.n_paths * ensemble.schedule.n_steps
     return gathered(ensemble, before, batches, watch.provenance(n_total))
+
+
+def warn_of_long_steps(ensemble: Ensemble, batches: list[Batch]) -> None:
+    """Warn if the step does not resolve the force where more than a few paths end."""
+    share = sum(batch.n_fast for batch in batches) / ensemble.n_paths
+    if share > LARGEST_SHARE:
+        warnings.warn(
+            f"`ds` = {ensemble.schedule.ds:g} is long for this force: |∇B| ds exceeds "
+            f"{LARGEST_TURN:g} where {100 * share:.2g} % of the paths end, and "
+            "averages may be off by as much; compare with a shorter step",
+            UserWarning,
+            stacklevel=4,
+        )
 
 
 class Meter:
