@@ -26,8 +26,10 @@ if TYPE_CHECKING:
     from fpsolve.errors import (
         CheckpointError,
         CheckpointMismatchError,
+        CirculationError,
         ConfigurationError,
         DomainTooSmallError,
+        EntropyRiseError,
         FileFormatError,
         FpsolveError,
         GridMismatchError,
@@ -81,8 +83,9 @@ _MODULES = {
         "TabulatedCurve"
     ),
     "fpsolve.errors": (
-        "CheckpointError CheckpointMismatchError "
-        "ConfigurationError DomainTooSmallError FileFormatError FpsolveError "
+        "CheckpointError CheckpointMismatchError CirculationError "
+        "ConfigurationError DomainTooSmallError EntropyRiseError FileFormatError "
+        "FpsolveError "
         "GridMismatchError MassCorrectionError MassDriftError MemoryLimitError "
         "NegativeDensityError NonFiniteDensityError NonFinitePathError "
         "NotRepeatableError RunInterrupted SteadyStateError"
@@ -125,11 +128,13 @@ __all__ = [
     "Checkpoint",
     "CheckpointError",
     "CheckpointMismatchError",
+    "CirculationError",
     "Comparison",
     "ConfigurationError",
     "DomainTooSmallError",
     "EllipticNozzle",
     "EnergyProcess",
+    "EntropyRiseError",
     "FileFormatError",
     "FixedBelt",
     "FpsolveError",

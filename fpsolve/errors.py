@@ -15,8 +15,10 @@ from typing import Any
 __all__ = [
     "CheckpointError",
     "CheckpointMismatchError",
+    "CirculationError",
     "ConfigurationError",
     "DomainTooSmallError",
+    "EntropyRiseError",
     "FileFormatError",
     "ForkedProcessError",
     "FpsolveError",
@@ -192,6 +194,57 @@ class DomainTooSmallError(RunError):
         self.boundary_mass = boundary_mass
         self.half_width = half_width
         self.s = s
+        self.tolerance = tolerance
+
+
+class EntropyRiseError(RunError):
+    """The relative entropy rose on a belt at rest, where it can only fall.
+
+    Parameters
+    ----------
+    s : float
+        Arclength at which it was noticed.
+    rise : float
+        H(s) minus the smallest H before.
+    tolerance : float
+        Largest rise allowed.
+    """
+
+    def __init__(self, s: float, rise: float, tolerance: float) -> None:
+        super().__init__(
+            f"relative entropy risen by {rise:.2g}, more than the tolerance "
+            f"{tolerance:g}, at s = {s:g}, where it can only fall: the density is "
+            "wrong; use more cells or a smaller `half_width` where B is steep, a "
+            "smaller `ds`, or a larger `entropy_tolerance` if this is acceptable."
+        )
+        self.s = s
+        self.rise = rise
+        self.tolerance = tolerance
+
+
+class CirculationError(RunError):
+    """The circulation E G left its exact law e^{−A²s/2}: isotropic B, belt at rest.
+
+    Parameters
+    ----------
+    s : float
+        Arclength at which it was noticed.
+    deviation : float
+        E G minus what the law gives, relative to the largest |G|: the L1 error of the
+        density is at least as large.
+    tolerance : float
+        Largest deviation allowed.
+    """
+
+    def __init__(self, s: float, deviation: float, tolerance: float) -> None:
+        super().__init__(
+            f"circulation off its exact law by {deviation:.2g}, more than the "
+            f"tolerance {tolerance:g}, at s = {s:g}: the L1 error of the density is at "
+            "least as large; use a smaller `ds`, a finer grid, or a larger "
+            "`circulation_tolerance` if this is acceptable."
+        )
+        self.s = s
+        self.deviation = deviation
         self.tolerance = tolerance
 
 

@@ -31,6 +31,7 @@ NOT_EXTRAPOLATED = (
     "negative_mass",
     "boundary_mass",
     "mass_correction",
+    "entropy_rise",
     "theta",
 )
 

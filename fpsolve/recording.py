@@ -1,17 +1,20 @@
-"""What a run writes down at every recorded step."""
+"""What a run writes down at every recorded step, and what it may not do."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fpsolve import diagnostics
+from fpsolve.circulation import Circulation, obeys_circulation_law, remaining
 from fpsolve.functionals import RowFunctionals, inverse_of
 from fpsolve.grids import PhaseSpaceGrid
 from fpsolve.models import LayDownModel
+from fpsolve.potentials.at_points import value_at
 
 Array = NDArray[np.float64]
 
@@ -30,6 +33,10 @@ BASIC = (
 class Recorder:
     """Series of mass, H(p|r), its dissipation, minimum, negative and boundary mass.
 
+    On a belt at rest H(p|p_S) can only fall; `entropy_rise` is H minus the smallest H
+    before. Where B is isotropic as well E G decays by a law; `circulation` is E G and
+    `circulation_deviation` what it misses. Neither is recorded where no law holds.
+
     Parameters
     ----------
     model : LayDownModel
@@ -43,7 +50,13 @@ class Recorder:
         self, model: LayDownModel, grid: PhaseSpaceGrid, reference: Array | None = None
     ) -> None:
         self.model, self.grid = model, grid
+        self.falls = reference is None and model.has_equilibrium
+        self.lowest = math.inf
+        self.circulation = (
+            Circulation(model.potential, grid) if obeys_circulation_law(model) else None
+        )
         if reference is None and model.potential.normalisable:
+            value_at(model.potential, *grid.plane())
             equilibrium = model.equilibrium(*grid.plane())
             reference = np.broadcast_to(equilibrium, grid.shape[:2])
         self.reference = reference
@@ -72,6 +85,7 @@ class Recorder:
             **extra,
             **found.moments(),
         }
+        values |= self._kept_laws(values, found)
         self.first = self.first or values
         self.rows.append(values)
         return values
@@ -87,6 +101,28 @@ class Recorder:
             lost = found.entropy_dissipation(self.model.noise)
             entropy = found.relative_entropy(self.ratio)
         return {"relative_entropy": entropy, "entropy_dissipation": lost}
+
+    def _kept_laws(
+        self, values: dict[str, float], found: RowFunctionals
+    ) -> dict[str, float]:
+        """How far the record is from what the equation allows."""
+        laws = {}
+        if self.falls:
+            entropy = values["relative_entropy"]
+            self.lowest = min(self.lowest, entropy)
+            laws["entropy_rise"] = entropy - self.lowest
+        if self.circulation is not None:
+            now = self.circulation.of(found)
+            start = self.first or {"s": values["s"], "circulation": now}
+            left = remaining(self.model.noise, values["s"] - start["s"])
+            laws["circulation"] = now
+            laws["circulation_deviation"] = now - left * start["circulation"]
+        return laws
+
+    def go_on(self, series: Mapping[str, Array]) -> None:
+        """Continue after the records in `series`, which were made elsewhere."""
+        entropies = series["relative_entropy"]
+        self.lowest = float(np.fmin.reduce(entropies, initial=math.inf))
 
     def floor(self) -> float:
         """Entropy of the reference's restriction to the grid, at the initial mass."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -11,7 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fpsolve.errors import (
+    CirculationError,
     DomainTooSmallError,
+    EntropyRiseError,
     MassDriftError,
     NegativeDensityError,
     NonFiniteDensityError,
@@ -30,7 +32,7 @@ if TYPE_CHECKING:
     from fpsolve.keeping import MemoryKeeper
     from fpsolve.solve import Scheme, Tolerances
 
-__all__ = ["Run"]
+__all__ = ["Run", "check_laws"]
 
 Array = NDArray[np.float64]
 
@@ -101,6 +103,8 @@ class Run:
             self._record(0)
         else:
             self.step = reached
+            kept = self.keeper.series(self.recorder.columns, self.recorder.rows)
+            self.recorder.go_on(kept)
         self.settled = True
 
     def _legs(self) -> Iterator[tuple[int, int]]:
@@ -153,6 +157,7 @@ class Run:
                 s,
                 allowed.boundary,
             )
+        check_laws(values, allowed)
 
     def _partial(
         self, status: str, message: str, fallback: Solution | None
@@ -190,3 +195,14 @@ class Run:
             return self.p0.copy()
         self.state.work[...] = self.p0
         return self.state.work
+
+
+def check_laws(values: Mapping[str, float], allowed: Tolerances) -> None:
+    """Raise if a record breaks what holds on a belt at rest; see `Recorder`."""
+    rise = values.get("entropy_rise", 0.0)
+    # An infinite tolerance asks not to be told, not even of NaN.
+    if not (rise <= allowed.entropy or math.isinf(allowed.entropy)):
+        raise EntropyRiseError(values["s"], rise, allowed.entropy)
+    deviation = values.get("circulation_deviation", 0.0)
+    if not (abs(deviation) <= allowed.circulation or math.isinf(allowed.circulation)):
+        raise CirculationError(values["s"], deviation, allowed.circulation)

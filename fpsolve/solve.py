@@ -69,6 +69,8 @@ def solve(
     mass_tolerance: float = 1e-10,
     boundary_tolerance: float = 1e-3,
     negative_tolerance: float = 0.2,
+    entropy_tolerance: float = 0.1,
+    circulation_tolerance: float = 0.05,
     reference: Array | None = None,
     record_every: int = 1,
     memory_limit: int | None = None,
@@ -103,6 +105,13 @@ def solve(
     negative_tolerance : float
         Largest ∫ max(−p, 0), relative to the mass. Undershoot of a few percent is
         what high-order interpolation leaves beside fronts.
+    entropy_tolerance : float
+        Largest rise of H(p|p_S) above an earlier value on a belt at rest, where it can
+        only fall.
+    circulation_tolerance : float
+        Largest deviation of E G/max|G|, G = e^{−B} (ξ₁ sin α − ξ₂ cos α), from its
+        exact law e^{−A²s/2}, for isotropic B on a belt at rest. The L1 error of the
+        density is at least that.
     reference : ndarray, optional
         Density the entropy is relative to; p_S by default.
     record_every : int
@@ -128,6 +137,8 @@ def solve(
     NonFiniteDensityError, MassDriftError, NegativeDensityError, DomainTooSmallError
         During the run, each with its numbers and the partial solution; so is
         `MassCorrectionError` of the semi-Lagrangian scheme.
+    EntropyRiseError, CirculationError
+        Likewise, where a run on a belt at rest breaks a law of the equation.
     CheckpointMismatchError
         If the folder holds the checkpoint of another run; names every difference.
     CheckpointError
@@ -141,7 +152,14 @@ def solve(
     extrapolate = check_flag("extrapolate", extrapolate)
     if reference is not None:
         reference = checked_reference(reference, scheme.grid)
-    tolerances = Tolerances(mass_tolerance, boundary_tolerance, negative_tolerance)
+    allowed = {
+        "mass_tolerance": mass_tolerance,
+        "boundary_tolerance": boundary_tolerance,
+        "negative_tolerance": negative_tolerance,
+        "entropy_tolerance": entropy_tolerance,
+        "circulation_tolerance": circulation_tolerance,
+    }
+    tolerances = Tolerances(*allowed.values())
     save_at = None if save_at is None else tuple(checked_stops(save_at))
     schedule = make_schedule(s_span, ds, save_at, record_every)
     scheme.model.curve.check_span(schedule.start, schedule.end)
@@ -154,8 +172,7 @@ def solve(
     check_memory(required, memory_limit)
     arguments = run_arguments(
         s_span, ds, save_at, record_every=record_every, extrapolate=extrapolate,
-        mass_tolerance=mass_tolerance, boundary_tolerance=boundary_tolerance,
-        negative_tolerance=negative_tolerance,
+        **allowed,
     )  # fmt: skip
     with (
         threads_worth_their_wait(p0.size),
@@ -212,6 +229,8 @@ class Tolerances:
     mass: float
     boundary: float
     negative: float
+    entropy: float = 0.1
+    circulation: float = 0.05
 
     def __post_init__(self) -> None:
         for name, value in vars(self).items():

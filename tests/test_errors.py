@@ -43,6 +43,19 @@ EXAMPLES = [
         "unstable; use the form `h`.",
     ),
     (
+        errors.EntropyRiseError(s=0.5, rise=2.25, tolerance=0.1),
+        "relative entropy risen by 2.2, more than the tolerance 0.1, at s = 0.5, where "
+        "it can only fall: the density is wrong; use more cells or a smaller "
+        "`half_width` where B is steep, a smaller `ds`, or a larger "
+        "`entropy_tolerance` if this is acceptable.",
+    ),
+    (
+        errors.CirculationError(s=0.5, deviation=-0.07, tolerance=0.05),
+        "circulation off its exact law by -0.07, more than the tolerance 0.05, at s = "
+        "0.5: the L1 error of the density is at least as large; use a smaller `ds`, a "
+        "finer grid, or a larger `circulation_tolerance` if this is acceptable.",
+    ),
+    (
         errors.GridMismatchError((6, 7, 8), (6, 7), name="p0"),
         "`p0` must have the shape (6, 7, 8) of the grid, got (6, 7).",
     ),

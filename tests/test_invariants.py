@@ -162,7 +162,10 @@ def test_positive_drift_kick_never_goes_below_zero(potential, noise, balanced):
     grid = PhaseSpaceGrid(half_width, (24, 24, 16))
     model = LayDownModel(potential, noise)
     scheme = drift_kick(model, grid, positive=True, balanced=balanced)
-    solution = solve(scheme, sharp_start(grid), (0.0, 5.0), 0.1)
+    # The limiter moves much of a start this sharp: the circulation is off by 0.2.
+    solution = solve(
+        scheme, sharp_start(grid), (0.0, 5.0), 0.1, circulation_tolerance=0.3
+    )
     # Not even by rounding: a flux between 0 and its donor leaves a difference that
     # rounds to no less than 0, and the row limiter ends with max(·, 0).
     assert solution.minimum.min() >= 0.0
@@ -189,7 +192,10 @@ def test_the_balanced_forms_are_stable_at_low_noise(name, noise):
     grid = PhaseSpaceGrid(5.0, (32, 32, 24))
     p0 = initial.gaussian(grid, (1.0, 0.0), 0.5, np.pi / 2, 2.0)
     model = LayDownModel(QuadraticPotential(), noise)
-    solution = solve(build(name, model, grid), p0, (0.0, 10.0), 0.125)
+    # Limiting every row at each step costs the most: 0.095 of the circulation.
+    solution = solve(
+        build(name, model, grid), p0, (0.0, 10.0), 0.125, circulation_tolerance=0.1
+    )
     equilibrium = model.equilibrium(*grid.plane())[:, :, None]
     largest = (p0 / equilibrium).max()
     # 1.0 is the maximum principle, the rest the overshoot of a cell or two.

@@ -22,7 +22,10 @@ from fpsolve.spectral.quadratic import check_model
 
 N_STEPS = 4
 # A density may leave any of these boxes; here that is no matter.
-FREELY = {"boundary_tolerance": np.inf, "negative_tolerance": np.inf}
+FREELY = {
+    f"{name}_tolerance": np.inf
+    for name in ("boundary", "negative", "entropy", "circulation")
+}
 
 
 @pytest.fixture(autouse=True)

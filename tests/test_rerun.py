@@ -25,7 +25,10 @@ START = fp.initial.gaussian(
     GRID, mean=(1.0, 0.3), variance=1.0, angle=1.0, concentration=1.0
 )
 # The grid is a coarse one, made for quick tests.
-LENIENT = {"boundary_tolerance": 1.0, "negative_tolerance": 1.0, "mass_tolerance": 1.0}
+LENIENT = {
+    f"{name}_tolerance": 1.0
+    for name in ("mass", "boundary", "negative", "entropy", "circulation")
+}
 ENERGY = fp.EnergyProcess(QUADRATIC, 0.5)
 
 

@@ -44,6 +44,10 @@ __all__ = [
     "SpanSection",
 ]
 
+_TOLERANCES = tuple(
+    f"{name}_tolerance"
+    for name in ("mass", "boundary", "negative", "entropy", "circulation")
+)
 _Numbers = tuple[float, ...]
 _Matrix = tuple[tuple[float, float], tuple[float, float]]
 
@@ -152,17 +156,22 @@ class RunSection(SpanSection):
     mass_tolerance: float | None = None
     boundary_tolerance: float | None = None
     negative_tolerance: float | None = None
+    entropy_tolerance: float | None = None
+    circulation_tolerance: float | None = None
 
     def _make_schedule(self, ds: float, saves: _Numbers | None) -> None:
         make_schedule((0.0, self.s_end), ds, saves, self.record_every)
 
     @model_validator(mode="after")
     def _check_tolerances(self) -> RunSection:
-        for name in ("mass", "boundary", "negative"):
-            value = getattr(self, f"{name}_tolerance")
-            if value is not None:
-                check_tolerance(f"{name}_tolerance", value)
+        for name, value in self.tolerances().items():
+            check_tolerance(name, value)
         return self
+
+    def tolerances(self) -> dict[str, float]:
+        """Return the tolerances of `fpsolve.solve` that are given, by their names."""
+        given = {name: getattr(self, name) for name in _TOLERANCES}
+        return {name: value for name, value in given.items() if value is not None}
 
     def step(self, suggested: float) -> float:
         """Return the largest step, suggested or below, that meets all saving points.

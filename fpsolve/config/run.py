@@ -118,8 +118,4 @@ class RunConfig(Description):
             "record_every": run.record_every,
             "extrapolate": run.extrapolate,
         }
-        for name in ("mass_tolerance", "boundary_tolerance", "negative_tolerance"):
-            value = getattr(run, name)
-            if value is not None:
-                arguments[name] = value
-        return arguments
+        return arguments | run.tolerances()

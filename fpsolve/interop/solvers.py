@@ -21,6 +21,8 @@ from fpsolve.errors import (
 from fpsolve.grids import PhaseSpaceGrid
 from fpsolve.interop.fields import from_pde_field
 from fpsolve.interop.pypde import FokkerPlanckPDE, expect_grid
+from fpsolve.recording import Recorder
+from fpsolve.run import check_laws
 from fpsolve.schemes import DriftKick, SemiLagrangian
 from fpsolve.schemes.form import State
 from fpsolve.solve import Scheme, Tolerances, checked_start
@@ -50,6 +52,7 @@ class SchemeSolverBase(SolverBase):  # type: ignore[misc]
     backend : str, optional
         Ignored: the schemes bring their own compiled kernels.
     mass_tolerance, boundary_tolerance, negative_tolerance : float, optional
+    entropy_tolerance, circulation_tolerance : float, optional
         As in `fpsolve.solve`.
     **options
         Keyword arguments of the scheme.
@@ -61,6 +64,7 @@ class SchemeSolverBase(SolverBase):  # type: ignore[misc]
     ValueError
         If dt is missing or not positive.
     NonFiniteDensityError, MassDriftError, NegativeDensityError, DomainTooSmallError
+    EntropyRiseError, CirculationError
         During the run.
     """
 
@@ -74,13 +78,16 @@ class SchemeSolverBase(SolverBase):  # type: ignore[misc]
         mass_tolerance: float = 1e-10,
         boundary_tolerance: float = 1e-3,
         negative_tolerance: float = 0.2,
+        entropy_tolerance: float = 0.1,
+        circulation_tolerance: float = 0.05,
         **options: Any,
     ) -> None:
         check_equation(pde, FokkerPlanckPDE, self.name)
         super().__init__(pde, backend="numpy")
         self.tolerances = Tolerances(
-            mass_tolerance, boundary_tolerance, negative_tolerance
-        )
+            mass_tolerance, boundary_tolerance, negative_tolerance, entropy_tolerance,
+            circulation_tolerance,
+        )  # fmt: skip
         self.options = options
 
     def make_stepper(
@@ -153,11 +160,15 @@ class Stepper:
         self.state = self.scheme.start(p0)
         self.origin, self.n_steps = t_start, 0
         self.mass = float(p0.sum())
+        self.recorder = Recorder(self.scheme.model, self.scheme.grid)
+        self.recorder.record(p0, t_start)
 
     def _show(self, field: Any) -> None:
         p = self.scheme.density(self.state)
         check_density(p, self.reached, self.mass, self.scheme, self.tolerances)
         check_correction(self.state, self.reached, self.scheme)
+        check_laws(self.recorder.record(p, self.reached), self.tolerances)
+        self.recorder.rows.clear()
         self.info["mass_correction"] = self.state.correction
         if self.state.theta is not None:
             self.info["theta"] = self.state.theta

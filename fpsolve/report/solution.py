@@ -231,13 +231,28 @@ def _accuracy(solution: Solution) -> list[Block]:
             "= true solves with ds and ds/2, combines both, and estimates the error "
             "of every number."
         )
-        return [Paragraph(said)]
+        return [Paragraph(said), *_laws(solution)]
     said = (
         "Errors are Richardson estimates from the runs with ds and ds/2: those of the "
         "step. What the grid does not resolve is not in them; the mass in the "
         "outermost cells and negative values tell of it."
     )
-    return [_error_table(solution), Paragraph(said)]
+    return [_error_table(solution), Paragraph(said), *_laws(solution)]
+
+
+def _laws(solution: Solution) -> list[Block]:
+    """What the run missed of the laws of a belt at rest, where they hold."""
+    series, kept = solution.series, []
+    if np.size(series.get("entropy_rise", ())):
+        rise = float(np.max(series["entropy_rise"]))
+        kept.append(f"H, which can only fall, rose by at most {rise:.1e}")
+    if np.size(series.get("circulation_deviation", ())):
+        off = float(np.max(np.abs(series["circulation_deviation"])))
+        kept.append(
+            f"the circulation, which decays as exp(-A²s/2), was off by at most "
+            f"{off:.1e}, a lower bound of the L¹ error"
+        )
+    return [Paragraph(f"On a belt at rest {'; '.join(kept)}.")] if kept else []
 
 
 def _error_table(solution: Solution) -> Table:
