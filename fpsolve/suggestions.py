@@ -110,6 +110,11 @@ def suggest_step(
     check_tolerance(tolerance)
     mean_force = mean_square_force(model, grid)
     law = splitting_coefficient(model, mean_force)
+    if not math.isfinite(law):
+        raise ValueError(
+            "`grid` must resolve exp(-B), got a mean square of the force beyond all "
+            "numbers; take more cells, or a smaller `half_width`."
+        )
     wanted = min(math.sqrt(tolerance / law), 3.0 / max(model.noise, 1e-3) ** 2, 1.0)
     ds = 1.0 / math.ceil(1.0 / wanted)
     cell = max(grid.spacing[:2])

@@ -326,4 +326,6 @@ def test_the_arguments_of_a_run_are_plain_numbers():
         "mass_tolerance": 1e-10,
         "boundary_tolerance": 1e-3,
         "negative_tolerance": 0.2,
+        "entropy_tolerance": 0.1,
+        "circulation_tolerance": 0.05,
     }

@@ -124,7 +124,10 @@ def test_small_steps_without_noise_are_stopped_before_they_blow_up():
             record_every=20,
         )  # fmt: skip
     positive = drift_kick(model, grid, balanced=True, positive=True)
-    solution = solve(positive, p0, (0.0, 50.0), 0.025, record_every=20)
+    # Limiting every row in 2000 steps wears the circulation off.
+    solution = solve(
+        positive, p0, (0.0, 50.0), 0.025, record_every=20, circulation_tolerance=1.0
+    )
     assert solution.minimum.min() >= 0.0
     assert np.abs(solution.final).max() <= p0.max()
 

@@ -195,3 +195,11 @@ def test_points_may_be_single_numbers():
     assert (float(slope1), float(slope2)) == (1.0, 2.0)
     with pytest.raises(ValueError, match=r"at xi = \(0, 0\), cell \(\)"):
         gradient_at(KINK, 0.0, 0.0)
+
+
+def test_a_force_whose_square_overflows_where_the_density_is_gives_no_step():
+    narrow = fp.LayDownModel(fp.QuadraticPotential(1e-100, 1e-100), 1.0)
+    with pytest.raises(ValueError, match=r"`grid` must resolve exp\(-B\), got a mean square of the force beyond all numbers; take more cells"):  # fmt: skip  # noqa: E501
+        fp.suggest_step(narrow, EVEN)
+    # Where no density is it does not matter.
+    assert 0 < fp.suggest_step(fp.LayDownModel(fp.PowerPotential(300.0), 1.0), EVEN) < 1
