@@ -136,8 +136,10 @@ class LayDownModel:
                 "`potential` must be normalisable to have an equilibrium, got "
                 f"{self.potential!r}; choose one that grows with the distance."
             )
-        weight = np.exp(-self.potential.value(xi1, xi2))
-        return np.asarray(weight / (2 * math.pi * self.potential.partition_function))
+        normalisation = self.potential.normalisation
+        # Both parts of Z at once would overflow where B is far below zero.
+        weight = np.exp(normalisation.lowest - self.potential.value(xi1, xi2))
+        return np.asarray(weight / (2 * math.pi * normalisation.integral))
 
     @property
     def equation(self) -> str:

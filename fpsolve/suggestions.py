@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +13,7 @@ from fpsolve.grids import PhaseSpaceGrid, check_grid
 from fpsolve.models import LayDownModel, check_model
 from fpsolve.potentials import Potential
 from fpsolve.potentials.at_points import gradient_at, value_at
+from fpsolve.potentials.nodes import GibbsNodes, gibbs_nodes
 
 __all__ = ["SuggestedGrid", "SuggestedStep", "suggest_grid", "suggest_step"]
 
@@ -36,8 +38,11 @@ LEAST_NOISE = 0.05
 # boundary mass would stop a run at its default tolerance of 1e-3.
 BOX_SHARE = 0.1
 LARGEST_LOSS = 5e-5
-SAMPLES = 256
 WIDEST = 1e3
+# A deviation this many times the width of one well is that of several.
+WELLS = 1 / 0.6
+# Cells beyond any machine: 32 GiB for one density.
+MOST_CELLS = 2.0**32
 
 
 class SuggestedStep(float):
@@ -131,19 +136,31 @@ def suggest_step(
     return SuggestedStep(ds, reason + ".")
 
 
-def suggest_grid(model: LayDownModel, tolerance: float = 1e-2) -> SuggestedGrid:
+def suggest_grid(
+    model: LayDownModel,
+    tolerance: float = 1e-2,
+    *,
+    initial: Any = None,
+    s_end: float | None = None,
+) -> SuggestedGrid:
     """Box and cells for an L1 error of about `tolerance`, from the measured laws.
 
-    The box holds all of e^{−B} but a tenth of the tolerance (5e-5 at most), moved by
-    the belt: |∇B| = A²k/2 with I₁(k)/I₀(k) = v, from E cos α = −v. The cells resolve
-    features half as wide as the equilibrium with eight-point interpolation; a
-    narrower start needs more. Cells and angles grow as the noise falls.
+    The box holds all but a tenth of the tolerance (5e-5 at most) of e^{−B}, all wells
+    of it. Where the belt or a nozzle moves, or the start is given, it also holds 8192
+    paths and is checked with 8192 others. The cells resolve features half as wide as
+    the equilibrium, or its wells, with eight-point interpolation; a narrower start
+    needs more. Cells and angles grow as the noise falls.
 
     Parameters
     ----------
     model : LayDownModel
         Its e^{−B} must be normalisable.
     tolerance : float
+    initial : law, optional
+        Law of the start from `fpsolve.paths`; e^{−B}/Z by default.
+    s_end : float, optional
+        Length of the run from the start of the curve; by default long enough for the
+        law to settle.
 
     Returns
     -------
@@ -153,7 +170,9 @@ def suggest_grid(model: LayDownModel, tolerance: float = 1e-2) -> SuggestedGrid:
     Raises
     ------
     ValueError
-        If the tolerance is not in (0, 1) or the potential does not confine.
+        If the tolerance is not in (0, 1), the potential does not confine, or no box of
+        a reasonable size holds the law: paths spread without end, e^{−B} falls like a
+        power, or its wells are tiny for their distance.
     """
     check_model(model)
     check_tolerance(tolerance)
@@ -163,22 +182,20 @@ def suggest_grid(model: LayDownModel, tolerance: float = 1e-2) -> SuggestedGrid:
             "normalisable exp(-B) no box is large enough, choose one by hand."
         )
     lost = min(BOX_SHARE * tolerance, LARGEST_LOSS)
-    shift = belt_shift(model)
-    half1, half2 = box_half_widths(model.potential, lost)
-    half_widths = (round_up(half1 + shift), round_up(half2))
-    coarse = PhaseSpaceGrid(half_widths, (SAMPLES, SAMPLES, 4))
-    law = splitting_coefficient(model, mean_square_force(model, coarse))
+    nodes = gibbs_nodes(model.potential)
+    half_widths, held = box_of(model, nodes, lost, initial, s_end)
+    law = splitting_coefficient(model, sum(nodes.mean_square_forces()))
     ds = min(math.sqrt(tolerance / law), 1.0)
-    width = feature_width(model)
+    width = feature_width_of(nodes, model.noise)
     cell = width * (0.3 * tolerance * ds / INTERPOLATION_COEFFICIENT) ** (1 / 8)
-    kink = slope_at_origin(model.potential)
+    kink = slope_at_origin(model.potential, min(nodes.deviations()))
     if kink > 0:
         cell = min(cell, math.sqrt(0.5 * tolerance / KINK_COEFFICIENT) / kink)
     n1, n2 = (even_cells(2 * half / cell) for half in half_widths)
     n_alpha = angles_for(model.noise)
+    check_size(n1, n2, n_alpha, half_widths, width)
     reason = (
-        f"half widths {half_widths[0]:g} and {half_widths[1]:g} leave less than "
-        f"{lost:.1g} of exp(-B) outside (belt shift {shift:.2g}); cells of "
+        f"half widths {half_widths[0]:g} and {half_widths[1]:g} {held}; cells of "
         f"{cell:.2g} resolve features of width {width:.2g} with eight-point "
         f"interpolation; {n_alpha} angles suit A = {model.noise:g}"
     )
@@ -186,6 +203,51 @@ def suggest_grid(model: LayDownModel, tolerance: float = 1e-2) -> SuggestedGrid:
         reason += f"; the kink of slope {kink:.2g} at the origin limits the cells"
     reason += "."
     return SuggestedGrid.because(half_widths, (n1, n2, n_alpha), reason)
+
+
+def box_of(
+    model: LayDownModel,
+    nodes: GibbsNodes,
+    lost: float,
+    initial: Any,
+    s_end: float | None,
+) -> tuple[tuple[float, float], str]:
+    """Half widths of a box that holds the law, and what they leave outside."""
+    if not nodes.unknown < lost / 2:
+        raise ValueError(
+            f"`potential` must fall fast enough for a box, got {model.potential!r}: "
+            f"a share of {nodes.unknown:.2g} of exp(-B) lies farther out than 1e8; "
+            "choose a box by hand."
+        )
+    half1, half2 = nodes.half_widths(lost)
+    if model.curve.fixed and initial is None:
+        half_widths = rounded_up(half1), rounded_up(half2)
+        if nodes.outside(half_widths) > lost:
+            half1, half2 = nodes.half_widths(lost / 2)
+            half_widths = rounded_up(half1), rounded_up(half2)
+        outside = nodes.outside(half_widths)
+        return half_widths, f"leave {outside:.1e} of exp(-B) outside"
+    # Paths are an oracle: the solver does not know them, and loads them for this only.
+    from fpsolve.boxes import box_for_travel
+
+    shift = belt_shift(model)
+    travel = box_for_travel(model, nodes, (half1 + shift, half2), lost, initial, s_end)
+    belt = "" if model.curve.fixed else f", belt shift {shift:.2g}"
+    held = f"leave less than {lost:.1g} outside ({travel.text}{belt})"
+    return travel.half_widths, held
+
+
+def check_size(
+    n1: int, n2: int, n_alpha: int, half_widths: tuple[float, float], width: float
+) -> None:
+    """Raise if the grid is beyond any machine."""
+    if not float(n1) * n2 * n_alpha <= MOST_CELLS:
+        raise ValueError(
+            f"`model` must have a pattern that a grid can hold, got features of width "
+            f"{width:.2g} in a box of half widths {half_widths[0]:g} and "
+            f"{half_widths[1]:g}: {n1} x {n2} x {n_alpha} cells; move the minimum of B "
+            "to the origin, or choose a grid by hand."
+        )
 
 
 def check_tolerance(tolerance: float) -> None:
@@ -218,49 +280,37 @@ def mean_square_force(model: LayDownModel, grid: PhaseSpaceGrid) -> float:
 
 def feature_width(model: LayDownModel) -> float:
     """Half the smaller standard deviation of e^{−B}, less where noise is small."""
-    narrowing = min(1.0, math.pow(max(model.noise, LEAST_NOISE), FILAMENTS))
     if not model.potential.normalisable:
-        return FEATURE * narrowing
-    xi1, xi2, weight = sampled(model.potential)
-    variances = float((weight * xi1**2).sum()), float((weight * xi2**2).sum())
-    return FEATURE * narrowing * math.sqrt(min(variances))
+        return FEATURE * narrowing(model.noise)
+    return feature_width_of(gibbs_nodes(model.potential), model.noise)
 
 
-def sampled(potential: Potential) -> tuple[Array, Array, Array]:
-    """Cell centres of a box that holds e^{−B} and its normalised weights on them."""
-    half = 1.0
-    while edge_share(potential, half) > 1e-6 and half < WIDEST:
-        half *= 1.5
-    grid = PhaseSpaceGrid(half, (SAMPLES, SAMPLES, 4))
-    xi1, xi2 = grid.plane()
-    value = potential.value(xi1, xi2)
-    weight = np.exp(value.min() - value)
-    return xi1, xi2, weight / weight.sum()
+def feature_width_of(nodes: GibbsNodes, noise: float) -> float:
+    """The same; of one well where there are several, of the wall where it is steep."""
+    widths = [
+        deviation if deviation < WELLS / math.sqrt(force) else 1 / math.sqrt(force)
+        for deviation, force in zip(
+            nodes.deviations(), nodes.mean_square_forces(), strict=True
+        )
+    ]
+    return FEATURE * narrowing(noise) * min(widths)
 
 
-def edge_share(potential: Potential, half: float) -> float:
-    """Largest e^{−B} on the edge of a box relative to the largest inside."""
-    line = np.linspace(-half, half, SAMPLES)
-    inside = np.asarray(potential.value(line[:, None], line[None, :]))
-    edges = (inside[0], inside[-1], inside[:, 0], inside[:, -1])
-    lowest = min(float(edge.min()) for edge in edges)
-    return math.exp(min(float(inside.min()) - lowest, 0.0))
+def narrowing(noise: float) -> float:
+    """What little noise makes of the width of a feature."""
+    return min(1.0, math.pow(max(noise, LEAST_NOISE), FILAMENTS))
 
 
 def box_half_widths(potential: Potential, lost: float) -> tuple[float, float]:
     """Half widths outside which e^{−B} has the share `lost`, direction by direction."""
-    xi1, xi2, weight = sampled(potential)
-    widths = []
-    for axis, places in ((1, xi1.ravel()), (0, xi2.ravel())):
-        order = np.argsort(np.abs(places))
-        inside = np.cumsum(weight.sum(axis=axis)[order])
-        enough = int(np.searchsorted(inside, 1 - lost))
-        widths.append(float(np.abs(places[order][min(enough, places.size - 1)])))
-    return widths[0], widths[1]
+    return gibbs_nodes(potential).half_widths(lost)
 
 
 def belt_shift(model: LayDownModel) -> float:
-    """Where the belt moves the mean of ξ1: |∂₁B| = A²k/2 with I₁(k)/I₀(k) = v."""
+    """Where the belt moves the mean of ξ1: |∂₁B| = A²k/2 with I₁(k)/I₀(k) = v.
+
+    From where B is lowest along the belt; zero where the force never gets that strong.
+    """
     from scipy.optimize import brentq
     from scipy.special import i0e, i1e
 
@@ -273,15 +323,29 @@ def belt_shift(model: LayDownModel) -> float:
     def excess(x: float) -> float:
         return float(model.potential.gradient(x, 0.0)[0]) - force
 
-    return float(brentq(excess, 0.0, WIDEST)) if excess(WIDEST) > 0 else 0.0
+    centre = 0.0
+    if float(model.potential.gradient(0.0, 0.0)[0]) != 0:
+        centre = lowest_on_belt(model.potential)
+    if not excess(centre) < 0 < excess(WIDEST):
+        return 0.0
+    return float(brentq(excess, centre, WIDEST)) - centre
 
 
-def slope_at_origin(potential: Potential) -> float:
-    """|∇B| just off the origin of an isotropic potential, zero if B is smooth there."""
+def lowest_on_belt(potential: Potential) -> float:
+    """About where B is lowest along ξ2 = 0."""
+    places = np.linspace(-WIDEST, WIDEST, 20001)
+    return float(places[np.argmin(potential.value(places, 0.0))])
+
+
+def slope_at_origin(potential: Potential, length: float) -> float:
+    """|∇B| just off the origin of an isotropic potential, zero if B is smooth there.
+
+    `length` is the size of the pattern, on which B changes by about one.
+    """
     if not potential.isotropic:
         return 0.0
-    slope = float(np.hypot(*potential.gradient(1e-6, 0.0)))
-    return slope if slope > 1e-3 else 0.0
+    slope = float(np.hypot(*potential.gradient(1e-6 * length, 0.0)))
+    return slope if slope * length > 1e-3 else 0.0
 
 
 def angles_for(noise: float) -> int:
@@ -293,9 +357,10 @@ def angles_for(noise: float) -> int:
     return 32 if noise >= 1 else 64 if noise >= 0.3 else 128
 
 
-def round_up(half_width: float) -> float:
-    """To the next half."""
-    return math.ceil(2 * half_width) / 2
+def rounded_up(half_width: float) -> float:
+    """To the next eighth of the power of two below: 4.1 becomes 4.5, 0.041 0.0469."""
+    step = 2.0 ** (math.floor(math.log2(half_width)) - 3)
+    return math.ceil(half_width / step) * step
 
 
 def even_cells(number: float) -> int:

@@ -289,9 +289,16 @@ def test_a_kink_across_the_rings_keeps_the_accuracy_promised():
     assert kinked.partition_function == pytest.approx(4.0, rel=1e-6)
 
 
-def test_exp_minus_b_must_not_underflow_everywhere():
-    lifted = IsotropicPotential(lambda r: 1e4 + r, np.ones_like)
-    with pytest.raises(ValueError, match="underflow; subtract the minimum of B"):
+@pytest.mark.parametrize("constant", [-1e4, -800.0, 800.0, 1e4])
+def test_a_constant_added_to_b_is_subtracted_from_the_logarithm_of_z(constant):
+    lifted = IsotropicPotential(lambda r: constant + r, np.ones_like)
+    assert lifted.normalisable
+    # B is known to the rounding of the constant.
+    assert lifted.log_partition_function == pytest.approx(
+        math.log(2 * math.pi) - constant, rel=1e-15, abs=1e-11
+    )
+    pattern = r"`partition_function` must be within .* subtract the minimum of B, or"
+    with pytest.raises(ValueError, match=pattern):
         _ = lifted.partition_function
 
 

@@ -5,9 +5,11 @@ import pickle
 
 import numpy as np
 import pytest
+from mixtures import two_wells
 
 import fpsolve as fp
 from fpsolve import suggestions
+from fpsolve.config import RunConfig
 
 
 def model(noise=1.0, potential=None, curve=None):
@@ -66,6 +68,120 @@ def test_the_belt_shift_tends_to_the_mean_of_the_hydrodynamic_limit():
     shifted = model(2.0, curve=fp.MovingBelt(0.001))
     # ⟨ξ1⟩ = A²k/2 with k → 2v as v → 0; the next term is of relative order v².
     assert suggestions.belt_shift(shifted) == pytest.approx(0.004, rel=1e-5)
+
+
+def share_outside(grid, model, s_end, law=None):
+    """Largest share, over eight s, of 20 000 paths outside the box."""
+    law = law or fp.paths.EquilibriumLaw(model.potential)
+    looks = s_end / 8 * np.arange(1, 9)
+    paths = fp.sample_paths(
+        model, 20_000, s_end, s_end / 400, seed=7, initial=law, save_at=looks
+    )
+    outside = (np.abs(paths.xi) > grid.half_widths).any(axis=2)
+    return outside.mean(axis=1).max()
+
+
+MOVING = {
+    "rotating nozzle": (1.0, None, fp.RotatingNozzle(0.0, 3.0, 2.0)),
+    "swinging nozzle on a belt": (1.0, None, fp.OscillatingNozzle(0.2, 1.0, 2.0)),
+    "fast belt": (1.0, None, fp.MovingBelt(0.9)),
+    "steep noise": (3.0, None, fp.MovingBelt(0.3)),
+    "off-centre well": (1.0, two_wells(5.0, 0.05).potential(), fp.MovingBelt(0.2)),
+    "table from 5": (
+        1.0,
+        None,
+        fp.TabulatedCurve([5, 6, 7, 8], [0, 2, -2, 0], [0, 1, 3, 1]),
+    ),
+}
+
+
+@pytest.mark.parametrize("name", MOVING.keys() - {"table from 5"})
+def test_the_box_holds_the_paths_of_every_curve(name):
+    noise, potential, curve = MOVING[name]
+    moving = model(noise, potential, curve)
+    grid = fp.suggest_grid(moving)
+    # 5e-5 may be outside: of 20 000 paths one, and eight at one of eight places only
+    # once in 1e5 such tests.
+    assert share_outside(grid, moving, 20.0) <= 8 / 20_000
+    assert "lie outside" in grid.reason
+
+
+def test_the_box_of_a_table_is_that_of_its_arclengths():
+    grid = fp.suggest_grid(model(*MOVING["table from 5"]))
+    # The curve goes four to and fro along the belt, three across.
+    assert grid.half_widths[0] > 5
+    assert "up to s = 3" in grid.reason
+
+
+def test_all_wells_are_in_the_box_and_resolved():
+    for distance in (16.0, 18.0):
+        grid = fp.suggest_grid(model(1.0, two_wells(distance).potential()))
+        assert grid.half_widths[0] > distance + 3.5
+        assert grid.half_widths[1] == 4.5
+        # Cells as for one well: both deviations of the whole are larger on a diagonal.
+        assert max(grid.spacing[:2]) < 0.3
+
+
+def test_a_longer_throwing_range_is_a_longer_unit_of_length():
+    for potential in (fp.QuadraticPotential, fp.LinearPotential):
+        small, large = (
+            fp.suggest_grid(model(noise, potential(*size)))
+            for noise, size in (
+                (1.0, [1.0] * (2 if potential is fp.QuadraticPotential else 1)),
+                (
+                    1.0,
+                    [2.0**-7] * 2 if potential is fp.QuadraticPotential else [2.0**7],
+                ),
+            )
+        )
+        assert small.half_widths[0] / large.half_widths[0] == 2.0**7
+        assert ("kink" in small.reason) == ("kink" in large.reason)
+
+
+def test_a_start_far_out_is_in_the_box():
+    law = fp.paths.GaussianLaw((7.0, 0.0), 0.1)
+    grid = fp.suggest_grid(model(), initial=law)
+    assert grid.half_widths[0] > 8
+    assert share_outside(grid, model(), 20.0, law) <= 8 / 20_000
+
+
+def test_a_file_without_a_grid_gets_one_for_its_start_and_its_nozzle():
+    tables = {
+        "potential": {"kind": "quadratic"},
+        "model": {"noise": 1.0},
+        "curve": {
+            "kind": "rotating_nozzle", "speed": 0.0, "radius": 3.0, "angular_speed": 2.0
+        },
+        "initial": {"kind": "gaussian", "mean": (2.0, 0.0), "variance": 0.5},
+        "scheme": {"kind": "drift_kick"},
+        "run": {"s_end": 1.0, "tolerance": 0.1},
+    }  # fmt: skip
+    grid = RunConfig.model_validate(tables).build().grid
+    assert min(grid.half_widths) > 6
+    assert "up to s = 1," in grid.reason
+
+
+def test_what_no_box_holds_is_refused():
+    far = model(2.0, fp.LinearPotential(), fp.MovingBelt(0.5))
+    with pytest.raises(ValueError, match="`model` must settle for a box to be sugg"):
+        fp.suggest_grid(far)
+    # For a run that ends there is a box: |ξ| grows by less than s (1 + v).
+    assert fp.suggest_grid(far, s_end=2.0).half_widths[0] < 20
+    slow = fp.IsotropicPotential(
+        lambda r: 2 * np.log1p(r**2), lambda r: 4 * r / (1 + r**2)
+    )
+    with pytest.raises(ValueError, match="falls more slowly than an exponential"):
+        fp.suggest_grid(model(1.0, slow, fp.MovingBelt(0.1)))
+    slower = fp.IsotropicPotential(
+        lambda r: 1.05 * np.log1p(r**2), lambda r: 2.1 * r / (1 + r**2)
+    )
+    with pytest.raises(ValueError, match=r"`potential` must fall fast enough for a"):
+        fp.suggest_grid(model(1.0, slower))
+    apart = two_wells(1e6).potential()
+    with pytest.raises(ValueError, match="`model` must have a pattern that a grid can"):
+        fp.suggest_grid(model(1.0, apart))
+    with pytest.raises(ValueError, match="`s_end` must be positive"):
+        fp.suggest_grid(model(curve=fp.MovingBelt(0.1)), s_end=-1.0)
 
 
 def test_less_noise_and_a_kink_ask_for_more_cells():

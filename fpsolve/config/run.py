@@ -16,8 +16,10 @@ from fpsolve.config.kinds import (
     SchemeSection,
 )
 from fpsolve.grids import PhaseSpaceGrid
+from fpsolve.initial import gaussian
 from fpsolve.memory import check_memory, required_memory
 from fpsolve.models import LayDownModel
+from fpsolve.paths import GaussianLaw
 from fpsolve.suggestions import SuggestedStep, suggest_grid, suggest_step
 
 __all__ = ["Problem", "RunConfig"]
@@ -94,8 +96,16 @@ class RunConfig(Description):
 
     def _grid(self, model: LayDownModel) -> PhaseSpaceGrid:
         if self.grid is None:
-            return suggest_grid(model, self.run.tolerance)
+            return suggest_grid(
+                model, self.run.tolerance, initial=self._law(), s_end=self.run.s_end
+            )
         return cast(PhaseSpaceGrid, self.grid.make())
+
+    def _law(self) -> GaussianLaw | None:
+        """The law of the start, which a suggested box is to hold."""
+        if type(self.initial).target is not gaussian:
+            return None
+        return GaussianLaw(**self.initial.model_dump(exclude={"kind"}))
 
     def _check_memory(self, grid: PhaseSpaceGrid, saved_in_memory: bool) -> None:
         # `solve` knows how much a scheme needs, but by then the initial density is

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve.paths.rejection import CellRejection
+from fpsolve.paths.patches import PatchRejection
 from fpsolve.potentials import LinearPotential, PowerPotential, QuadraticPotential
 from fpsolve.potentials.potential import Potential
 
@@ -13,10 +13,8 @@ __all__ = ["GibbsSampler"]
 
 Array = NDArray[np.float64]
 
-N_CELLS = 128
-# e^{-B} relative to its maximum below which nothing is sampled.
-NEGLIGIBLE = 1e-14
-WIDEST = 1e6
+# Share of exp(-B) beyond every place that is sampled which no sample can show.
+NEGLIGIBLE = 1e-10
 
 
 class GibbsSampler:
@@ -29,7 +27,7 @@ class GibbsSampler:
     Raises
     ------
     ValueError
-        If exp(-B) has no finite integral.
+        If exp(-B) has no finite integral, or falls too slowly.
     """
 
     def __init__(self, potential: Potential) -> None:
@@ -75,33 +73,13 @@ def isotropic_power(
     return points
 
 
-def plane_rejection(potential: Potential) -> CellRejection:
-    """Rejection from exp(-B) on a box that holds it."""
-    half, lowest = 1.0, lowest_value(potential, 1.0)
-    while edge_value(potential, half) - lowest < -np.log(NEGLIGIBLE):
-        half *= 1.3
-        if half > WIDEST:
-            raise ValueError(
-                f"`potential` must grow fast enough to be sampled, got {potential!r}: "
-                f"exp(-B) is not negligible at a distance of {WIDEST:g}."
-            )
-        lowest = min(lowest, lowest_value(potential, half))
-
-    def density(points: Array) -> Array:
-        return np.asarray(np.exp(lowest - potential.value(points[0], points[1])))
-
-    return CellRejection(density, (-half, -half), (half, half), (N_CELLS, N_CELLS))
-
-
-def lowest_value(potential: Potential, half: float) -> float:
-    """Least B on a grid over the box."""
-    line = np.linspace(-half, half, N_CELLS + 1)
-    return float(np.min(potential.value(line[:, None], line[None, :])))
-
-
-def edge_value(potential: Potential, half: float) -> float:
-    """Least B on the edge of the box."""
-    line = np.linspace(-half, half, N_CELLS + 1)
-    side = np.full_like(line, half)
-    edges = ((side, line), (-side, line), (line, side), (line, -side))
-    return min(float(np.min(potential.value(*edge))) for edge in edges)
+def plane_rejection(potential: Potential) -> PatchRejection:
+    """Rejection from exp(-B) on the cells that resolve it, wherever they lie."""
+    normalisation = potential.resolved_normalisation
+    if not normalisation.tail <= NEGLIGIBLE:
+        raise ValueError(
+            f"`potential` must grow fast enough to be sampled, got {potential!r}: a "
+            f"share of {normalisation.tail:.2g} of exp(-B) lies farther out than "
+            "floats resolve its valleys."
+        )
+    return PatchRejection(potential.value, normalisation, potential.isotropic)

@@ -34,6 +34,8 @@ _Box: TypeAlias = tuple[tuple[float, float], tuple[float, float]]
 
 # Share of the equilibrium's mass inside the dashed line.
 _SHARE = 0.95
+# Of the mass that the panels need not show.
+_OUTSIDE = 1e-3
 _PER_ROW = 3
 _THIN = 0.5
 # Height in inches of a page, and height / width from which a panel fits a column.
@@ -292,17 +294,17 @@ class _Region(NamedTuple):
 
 def _equilibrium_region(potential: Potential, n_cells: int = 400) -> _Region | None:
     """Return the region in a square that holds all but a thousandth of the mass."""
+    from fpsolve.potentials.nodes import gibbs_nodes
+
     if not potential.normalisable:
         return None
-    half_width, outside = 1.0, 1.0
-    while outside > 1e-3:
-        half_width *= 1.5
-        cell = 2 * half_width / n_cells
-        centres = -half_width + cell * np.arange(0.5, n_cells, dtype=np.float64)
-        weight = np.exp(-potential.value(centres[:, None], centres[None, :]))
-        descending = np.sort(weight, axis=None)[::-1]
-        share = np.cumsum(descending) * cell**2 / potential.partition_function
-        outside = 1 - float(share[-1])
+    half_width = max(gibbs_nodes(potential).half_widths(_OUTSIDE))
+    cell = 2 * half_width / n_cells
+    centres = -half_width + cell * np.arange(0.5, n_cells, dtype=np.float64)
+    value = potential.value(centres[:, None], centres[None, :])
+    weight = np.exp(value.min() - value)
+    descending = np.sort(weight, axis=None)[::-1]
+    share = np.cumsum(descending) / descending.sum()
     level = float(descending[np.searchsorted(share, _SHARE)])
     return _Region(centres, weight, level)
 

@@ -11,10 +11,12 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from fpsolve.potentials.partition import partition_function_of
+from fpsolve.potentials.partition import Normalisation, normalisation_of
 
 __all__ = ["Potential", "RadialPotential"]
 
+# e^{±700} is about the range of floats.
+_SMALLEST_LOGARITHM, _LARGEST_LOGARITHM = -700.0, 700.0
 # What must agree with the closed forms of a class: of Z, spectra, samples and limits.
 _COMPUTED = ("value", "gradient", "radial_value", "radial_derivative")
 
@@ -34,8 +36,9 @@ class Potential(ABC):
 
     A new potential is a frozen dataclass that defines `value`, `gradient`, `formula`
     and `latex`, and `kind` if it is to be stored; `partition_function` then comes from
-    quadrature. A class that is derived from one with closed forms, such as
-    `QuadraticPotential`, and has other values raises TypeError when it is defined.
+    quadrature, unless it is defined too. A class that is derived from one with closed
+    forms, such as `QuadraticPotential`, and has other values raises TypeError when it
+    is defined.
 
     References
     ----------
@@ -93,13 +96,63 @@ class Potential(ABC):
 
     @cached_property
     def partition_function(self) -> float:
-        """Z = ∫ exp(-B(ξ)) dξ over the plane; `math.inf` when it does not exist."""
-        return partition_function_of(self.value)
+        """Z = ∫ exp(-B(ξ)) dξ over the plane; `math.inf` when it does not exist.
+
+        ValueError when it exists but is too large or too small for a float: B is then
+        far from zero at its minimum, and `log_partition_function` tells.
+        """
+        if not self.normalisable:
+            return math.inf
+        logarithm = self.log_partition_function
+        if not _SMALLEST_LOGARITHM <= logarithm <= _LARGEST_LOGARITHM:
+            raise ValueError(
+                "`partition_function` must be within the range of floats, got "
+                f"exp({logarithm:g}); subtract the minimum of B, or use "
+                "`log_partition_function`."
+            )
+        return math.exp(logarithm)
+
+    @property
+    def log_partition_function(self) -> float:
+        """ln Z, which no constant added to B can make overflow."""
+        return self.normalisation.log_value
+
+    @cached_property
+    def normalisation(self) -> Normalisation:
+        """Z = e^{-lowest} · integral with its relative error; see `Normalisation`.
+
+        What is computed from e^{-B} uses e^{lowest - B} over the integral.
+
+        Raises
+        ------
+        ValueError
+            If B is NaN somewhere, or too rough for the quadrature.
+        """
+        if self._has_closed_form:
+            return Normalisation(0.0, self.partition_function)
+        return self.resolved_normalisation
+
+    @cached_property
+    def resolved_normalisation(self) -> Normalisation:
+        """The same by quadrature, with the cells that resolve e^{-B}."""
+        if not self._has_closed_form or not self.normalisable:
+            return normalisation_of(self.value, self.isotropic)
+        # The size of the pattern is known, however small or large.
+        length = math.sqrt(self.normalisation.integral / (2 * math.pi))
+
+        def value(xi1: ArrayLike, xi2: ArrayLike) -> NDArray[np.float64]:
+            return self.value(np.multiply(length, xi1), np.multiply(length, xi2))
+
+        return normalisation_of(value, self.isotropic).scaled(length)
+
+    @property
+    def _has_closed_form(self) -> bool:
+        return type(self).partition_function is not Potential.partition_function
 
     @property
     def normalisable(self) -> bool:
         """Whether exp(-B) is integrable over the plane."""
-        return math.isfinite(self.partition_function)
+        return math.isfinite(self.normalisation.integral)
 
     def to_dict(self) -> dict[str, Any]:
         """Return `kind` and the parameters as a JSON-able dictionary."""

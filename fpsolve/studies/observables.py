@@ -62,7 +62,7 @@ def direction(xi1: Array, xi2: Array, alpha: Array) -> Array:
 
 @dataclass(frozen=True)
 class Circulation:
-    """G(ξ, α) = e^{−B(ξ)} (ξ₁ sin α − ξ₂ cos α).
+    """G(ξ, α) = e^{−B(ξ)} (ξ₁ sin α − ξ₂ cos α), B counted from its lowest value.
 
     For isotropic B an eigenfunction, L G = −(A²/2) G: the autocorrelation of G along
     a path from μ is Var(G) e^{−A²s/2}, whatever the potential.
@@ -73,7 +73,8 @@ class Circulation:
     def __call__(self, xi1: Array, xi2: Array, alpha: Array) -> Array:
         """Return G, elementwise."""
         moment = xi1 * np.sin(alpha) - xi2 * np.cos(alpha)
-        return np.asarray(np.exp(-self.potential.value(xi1, xi2)) * moment)
+        lowest = self.potential.normalisation.lowest
+        return np.asarray(np.exp(lowest - self.potential.value(xi1, xi2)) * moment)
 
 
 def default_observables(potential: Potential) -> dict[str, Observable]:
@@ -132,7 +133,8 @@ def equilibrium_moments(
 def _integrals(potential: Potential, functions: Mapping[str, Observable]) -> Array:
     """∫ e^{−B} (1, f, f², …)/Z over the plane, the mean over α."""
     # The rules for infinite ranges expect lengths of about one.
-    length = math.sqrt(potential.partition_function / math.tau)
+    normalisation = potential.normalisation
+    length = math.sqrt(normalisation.integral / math.tau)
     angles = (np.arange(_N_ANGLES) + 0.5) * (math.tau / _N_ANGLES)
 
     def quadrant(xi1: Array, xi2: Array) -> Array:
@@ -142,7 +144,8 @@ def _integrals(potential: Potential, functions: Mapping[str, Observable]) -> Arr
             columns += [values.mean(axis=1), np.square(values).mean(axis=1)]
             _require_finite(name, columns[-1])
         with np.errstate(under="ignore"):
-            weight = np.exp(-potential.value(xi1, xi2)) / math.tau
+            # Integrals are then relative to Z, as length² 2π is the integral.
+            weight = np.exp(normalisation.lowest - potential.value(xi1, xi2)) / math.tau
             return np.asarray(weight * np.stack(columns, axis=1))
 
     def integrand(points: Array) -> Array:
@@ -158,6 +161,7 @@ def _integrals(potential: Potential, functions: Mapping[str, Observable]) -> Arr
         integrand, [0.0, 0.0], [math.inf, math.inf], rtol=_ERROR_AIMED_AT,
         atol=_ERROR_AIMED_AT, max_subdivisions=_N_SUBDIVISIONS,
     )  # fmt: skip
+    _require_whole(potential, float(found.estimate[0]))
     _require_accurate(functions, found.estimate, found.error)
     return np.asarray(found.estimate)
 
@@ -179,6 +183,15 @@ def _require_finite(name: str, squares: Array) -> None:
         raise ValueError(
             f"`functions['{name}']` must be finite on all of phase space, got "
             f"{squares[~np.isfinite(squares)][0]:g} for its square."
+        )
+
+
+def _require_whole(potential: Potential, total: float) -> None:
+    """The nodes are placed around the origin; wells far out may lie between them."""
+    if not abs(total - 1.0) <= _ERROR_ALLOWED:
+        raise ValueError(
+            f"`potential` must have its wells near the origin to be integrated, got "
+            f"{total:.6g} of exp(-B)/Z with {potential!r}; move the origin."
         )
 
 

@@ -17,6 +17,8 @@ Array = NDArray[np.float64]
 # Radii between e^-60 and e^60 are searched for circles, twenty to a factor of e.
 _REACH = 60.0
 _N_PROBES = 2401
+# Squares of energies down to e^{-300} are still numbers.
+_DEEPEST = 300.0
 
 
 class Well:
@@ -36,8 +38,8 @@ class Well:
     TypeError
         If `potential` is not a Potential.
     ValueError
-        If it is not isotropic, not normalisable, or r B'(r) = 1 does not have exactly
-        one solution.
+        If it is not isotropic, not normalisable, r B'(r) = 1 does not have exactly
+        one solution, or energies are beyond the range of floats.
 
     References
     ----------
@@ -62,6 +64,12 @@ class Well:
             raise ValueError(
                 f"`potential` must be normalisable for an energy process, got "
                 f"{potential!r}; choose one that grows with the distance."
+            )
+        if not abs(self.bottom) <= _DEEPEST:
+            raise ValueError(
+                "`potential` must be near zero at its minimum for an energy process, "
+                f"got exp({-self.bottom:.4g}) for the largest energy r exp(-B); "
+                "subtract the minimum of B."
             )
 
     def depth(self, y: Array) -> Array:

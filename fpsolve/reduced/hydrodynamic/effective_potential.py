@@ -18,15 +18,11 @@ from fpsolve.potentials import (
     QuadraticPotential,
 )
 from fpsolve.potentials.at_points import value_at
-from fpsolve.potentials.partition import partition_function_of
+from fpsolve.potentials.partition import normalisation_of
 
 __all__ = ["EffectivePotential", "check_limit"]
 
 Array = NDArray[np.float64]
-
-# Where the lowest point of Φ is looked for, far enough to tell that there is none.
-_RADII = np.exp2(np.linspace(-10.0, 20.0, 241))
-_ANGLES = (np.arange(128) + 0.5) * (2 * math.pi / 128)
 
 
 @dataclass(frozen=True)
@@ -74,7 +70,7 @@ class EffectivePotential:
         In closed form for quadratic and linear B and without a belt, by quadrature
         otherwise.
         """
-        at_rest = math.log(self.potential.partition_function)
+        at_rest = self.potential.log_partition_function
         if not self.pull:
             return at_rest
         if isinstance(self.potential, QuadraticPotential):
@@ -82,27 +78,7 @@ class EffectivePotential:
         slope = slope_of(self.potential)
         if slope is not None:
             return _log_normalisation_of_linear(slope, self.pull)
-        return self._by_quadrature()
-
-    def _by_quadrature(self) -> float:
-        centre1, centre2, lowest = self._lowest()
-        if not math.isfinite(lowest):
-            return math.inf
-        integral = partition_function_of(
-            lambda xi1, xi2: self.value(xi1 + centre1, xi2 + centre2) - lowest
-        )
-        return math.log(integral) - lowest
-
-    def _lowest(self) -> tuple[float, float, float]:
-        """About where Φ is lowest, and its value there; −∞ if that is far out."""
-        xi1 = _RADII[:, None] * np.cos(_ANGLES)
-        xi2 = _RADII[:, None] * np.sin(_ANGLES)
-        with np.errstate(over="ignore", invalid="ignore"):
-            values = self.value(xi1, xi2)
-        i, k = np.unravel_index(np.nanargmin(values), values.shape)
-        if i == len(_RADII) - 1:
-            return 0.0, 0.0, -math.inf
-        return float(xi1[i, k]), float(xi2[i, k]), float(values[i, k])
+        return normalisation_of(self.value).log_value
 
 
 def slope_of(potential: Potential) -> float | None:

@@ -99,10 +99,12 @@ def half_width_for(potential: Potential, process: EnergyProcess) -> float:
     from scipy.integrate import quad
     from scipy.optimize import brentq
 
-    def weight(r: float) -> float:
-        return r * math.exp(-float(potential.radial_value(r)))
+    normalisation = potential.normalisation
 
-    total = potential.partition_function / (2 * math.pi)
+    def weight(r: float) -> float:
+        return r * math.exp(normalisation.lowest - float(potential.radial_value(r)))
+
+    total = normalisation.integral / (2 * math.pi)
 
     def excess(width: float) -> float:
         return float(quad(weight, width, math.inf)[0]) / total - _OUTSIDE

@@ -18,7 +18,6 @@ Array = NDArray[np.float64]
 # outside, in which a function that grows like e^{B/2} still fits.
 _CELLS = 2000
 _LOST = 1e-30
-_WIDEST = 1e6
 
 
 def poincare_constant(potential: Potential) -> float:
@@ -95,10 +94,10 @@ def _least(potential: Potential, index: int, reach: float, n: int) -> float:
 
 def _reach(potential: Potential) -> float:
     """Radius beyond which r e^{−B} is below a share of its largest value."""
-    r = math.sqrt(potential.partition_function / math.tau) * np.geomspace(
+    r = math.sqrt(potential.normalisation.integral / math.tau) * np.geomspace(
         1e-3, 1e3, 4000
     )
-    r = r[r < _WIDEST]
-    height = np.log(r) - potential.radial_value(r)
+    with np.errstate(over="ignore"):
+        height = np.log(r) - potential.radial_value(r)
     inside = np.flatnonzero(height > height.max() + math.log(_LOST))
     return float(r[min(inside[-1] + 1, r.size - 1)])

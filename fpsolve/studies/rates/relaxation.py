@@ -110,9 +110,17 @@ def _grid(
 def _half_width(potential: Potential, axis: int, edge: float) -> float:
     places = np.geomspace(1e-3, 1e4, 20_000)
     point = (places, 0.0) if axis == 0 else (0.0, places)
-    height = potential.value(*point) - float(potential.value(0.0, 0.0))
-    first = int(np.argmax(height > -math.log(edge)))
-    return round(float(places[first]), 3)
+    with np.errstate(over="ignore"):
+        value = potential.value(*point)
+    lowest = min(float(value.min()), float(potential.value(0.0, 0.0)))
+    # Beyond the last place inside: B may rise and fall again on the way.
+    inside = np.flatnonzero(value - lowest <= -math.log(edge))
+    if not (inside.size and inside[-1] + 1 < places.size):
+        raise ValueError(
+            f"`potential` must have its throwing range between {places[0]:g} and "
+            f"{places[-1]:g}, got {potential!r}; scale it to one."
+        )
+    return round(float(places[inside[-1] + 1]), 3)
 
 
 def relaxation_case(
