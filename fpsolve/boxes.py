@@ -43,6 +43,9 @@ _TAIL, _HEAVY = 0.01, 1.25
 # A law that still spreads by this factor at the end has no box.
 _SPREADS = 1.15
 _N_TRIES, _WIDER = 4, 1.2
+# Of 8192 paths 0.4 are outside where 5e-5 of the law are, and five or more at one of
+# two dozen looks once in a thousand checks.
+_MOST_AT_ONCE = 4
 
 
 @dataclass(frozen=True)
@@ -113,7 +116,8 @@ def box_for_travel(
         half_widths = rounded_up(wanted[0]), rounded_up(wanted[1])
         beyond = (np.abs(second) > half_widths).any(axis=2)
         n_outside, n = int(beyond.sum()), beyond.size
-        if n_outside <= lost * n:
+        at_once = int(beyond.sum(axis=1).max())
+        if n_outside <= lost * n and at_once <= _MOST_AT_ONCE:
             return Travel(half_widths, plan.s_end - plan.s_start, n_outside, n)
         wanted = [_WIDER * half for half in wanted]
     raise ValueError(
