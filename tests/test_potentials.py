@@ -340,6 +340,13 @@ def test_scales_are_positive_and_finite(build, name, wrong):
         build(wrong)
 
 
+@pytest.mark.parametrize("wrong", [1e-200, 1e200])
+def test_scales_whose_squares_are_no_floats_are_refused(wrong):
+    for build in (QuadraticPotential, LinearPotential, lambda x: PowerPotential(2, x)):
+        with pytest.raises(ValueError, match=r"must lie between 1e-75 and 1e\+75, got"):
+            build(wrong)
+
+
 @pytest.mark.parametrize("wrong", [0.99, -2.0, math.nan, math.inf])
 def test_an_exponent_is_at_least_one(wrong):
     with pytest.raises(ValueError, match=f"at least 1 and finite, got {wrong:g}; belo"):

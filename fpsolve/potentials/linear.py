@@ -10,7 +10,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from fpsolve._checks import check_positive
+from fpsolve.potentials.lengths import check_length
 from fpsolve.potentials.potential import RadialPotential
 
 __all__ = ["LinearPotential"]
@@ -44,7 +44,7 @@ class LinearPotential(RadialPotential):
     kind: ClassVar[str] = "linear"
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "slope", check_positive("slope", self.slope))
+        object.__setattr__(self, "slope", check_length("slope", self.slope))
 
     def radial_value(self, r: ArrayLike) -> NDArray[np.float64]:
         """K r."""

@@ -10,7 +10,8 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from fpsolve._checks import check_positive, check_real
+from fpsolve._checks import check_real
+from fpsolve.potentials.lengths import check_length
 from fpsolve.potentials.potential import RadialPotential
 
 __all__ = ["PowerPotential"]
@@ -54,7 +55,7 @@ class PowerPotential(RadialPotential):
                 "the gradient is singular at the origin."
             )
         object.__setattr__(self, "exponent", exponent)
-        object.__setattr__(self, "scale", check_positive("scale", self.scale))
+        object.__setattr__(self, "scale", check_length("scale", self.scale))
 
     def radial_value(self, r: ArrayLike) -> NDArray[np.float64]:
         """(r/c)ⁿ / n."""

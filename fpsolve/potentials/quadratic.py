@@ -10,7 +10,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from fpsolve._checks import check_positive
+from fpsolve.potentials.lengths import check_length
 from fpsolve.potentials.potential import Potential
 
 __all__ = ["QuadraticPotential"]
@@ -44,8 +44,8 @@ class QuadraticPotential(Potential):
     kind: ClassVar[str] = "quadratic"
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "sigma1", check_positive("sigma1", self.sigma1))
-        object.__setattr__(self, "sigma2", check_positive("sigma2", self.sigma2))
+        object.__setattr__(self, "sigma1", check_length("sigma1", self.sigma1))
+        object.__setattr__(self, "sigma2", check_length("sigma2", self.sigma2))
 
     @property
     def isotropic(self) -> bool:
