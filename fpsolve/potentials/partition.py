@@ -199,7 +199,8 @@ def _error(cells: Cells) -> float:
 def _by_ring(cells: Cells) -> Array:
     """Integrals over the rings between 2^k and 2^{k+1}."""
     n_rings = _LARGEST_POWER - _SMALLEST_POWER + 1
-    return np.bincount(_ring_of(cells), cells.integral, n_rings)
+    rings = np.bincount(_ring_of(cells), cells.integral, n_rings)
+    return np.asarray(rings, dtype=np.float64)
 
 
 def _ring_of(cells: Cells) -> NDArray[np.int64]:

@@ -119,7 +119,7 @@ class Cells:
     def relative_to(self, reference: float) -> Cells:
         """The same, relative to a lower reference."""
         factor = np.exp(max(reference - self.reference, -700.0))
-        changed = {
+        changed: dict[str, Any] = {
             name: getattr(self, name) * factor
             for name in ("integral", "error", "bound")
         }
@@ -127,7 +127,7 @@ class Cells:
 
     def chosen(self, which: Any) -> Cells:
         """Some of the cells."""
-        kept = {
+        kept: dict[str, Any] = {
             field.name: getattr(self, field.name)[which]
             for field in fields(self)
             if field.name != "reference"
@@ -138,7 +138,7 @@ class Cells:
         """Both, relative to the lower reference."""
         reference = min(self.reference, other.reference)
         one, two = self.relative_to(reference), other.relative_to(reference)
-        both = {
+        both: dict[str, Any] = {
             field.name: np.concatenate(
                 [getattr(one, field.name), getattr(two, field.name)]
             )
@@ -236,7 +236,7 @@ def _contracted(weight: Array, first: Array, second: Array) -> Array:
 
 def _longer_side(edges: Array) -> NDArray[np.int64]:
     r0, r1, a0, a1 = edges.T
-    return (r1 * (a1 - a0) > r1 - r0).astype(np.int64)
+    return np.asarray(r1 * (a1 - a0) > r1 - r0).astype(np.int64)
 
 
 def lowest_nearby(values: Array, nodes: Array, axis: int) -> Array:
