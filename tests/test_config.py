@@ -118,7 +118,9 @@ def test_a_missing_grid_and_step_are_suggested_with_their_reason():
     text = (TEXT[:start] + TEXT[end:]).replace("ds = 0.25\n", "tolerance = 0.1\n")
     config = read_config(text.replace("save_at = [0.5, 1.0]\n", ""))
     problem = config.build()
-    suggested = suggest_grid(problem.model, 0.1)
+    # For the start and the length of this run.
+    law = fp.paths.GaussianLaw((0.5, 0.0))
+    suggested = suggest_grid(problem.model, 0.1, initial=law, s_end=1.0)
     assert problem.grid == suggested
     assert problem.grid.reason == suggested.reason
     ds = problem.arguments["ds"]
