@@ -12,7 +12,7 @@ import argparse
 from typing import Any
 
 import numpy as np
-from reporting import RESULTS, Report
+from reporting import Report, save_figure
 
 import fpsolve as fp
 from fpsolve.plotting.rates import plot_inverse_decay_rate, plot_rates
@@ -107,10 +107,9 @@ def main() -> None:
         )
         check(report, linear, "B = |ξ|")
         rows += rows_of(linear)
-        RESULTS.mkdir(exist_ok=True)
         figure = plot_inverse_decay_rate([quadratic, linear])
-        figure.savefig(RESULTS / f"inverse_decay_rate_{setting}.png")
-        plot_rates(quadratic).savefig(RESULTS / f"decay_rate_{setting}.png")
+        save_figure(figure, f"inverse_decay_rate_{setting}.png")
+        save_figure(plot_rates(quadratic), f"decay_rate_{setting}.png")
     report.table(rows)
     report.finish()
 

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 from hermite_poisson import FUNCTIONS, asymptotic_variance, least_noise
-from reporting import RESULTS, Report
+from reporting import Report, save_figure
 
 import fpsolve as fp
 from fpsolve.plotting.ergodicity import plot_ergodic_averages
@@ -186,10 +186,9 @@ def main() -> None:
     check_best_noise(report, fit)
     check_theorem(report, dataset)
     check_linear(report, n_paths, 5 if quick else 9, s_end)
-    RESULTS.mkdir(exist_ok=True)
     setting = "quick" if quick else "full"
     figure = plot_ergodic_averages(dataset, fit=fit)
-    figure.savefig(RESULTS / f"ergodic_averages_{setting}.png")
+    save_figure(figure, f"ergodic_averages_{setting}.png")
     report.finish()
 
 

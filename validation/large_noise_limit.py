@@ -23,7 +23,7 @@ for variable in ("OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS"):
     os.environ.setdefault(variable, "1")
 
 import numpy as np  # noqa: E402
-from reporting import RESULTS, Report  # noqa: E402
+from reporting import Report, save_figure  # noqa: E402
 
 import fpsolve as fp  # noqa: E402
 from fpsolve.paths import GaussianLaw  # noqa: E402
@@ -211,9 +211,8 @@ def main() -> None:
     check_against_expansions(report, dataset)
     check_rest(report)
     check_gap(report)
-    RESULTS.mkdir(exist_ok=True)
     setting = "quick" if quick else "full"
-    plot_large_noise(dataset).savefig(RESULTS / f"large_noise_limit_{setting}.png")
+    save_figure(plot_large_noise(dataset), f"large_noise_limit_{setting}.png")
     if not quick:
         quartic = fp.studies.large_noise_limit(
             QUARTIC, HALVINGS[:3],
@@ -221,7 +220,7 @@ def main() -> None:
         )  # fmt: skip
         check_orders(report, quartic, "|ξ|⁴/4")
         check_accuracy(report, quartic, "|ξ|⁴/4", 0.2)
-        plot_large_noise(quartic).savefig(RESULTS / "large_noise_limit_quartic.png")
+        save_figure(plot_large_noise(quartic), "large_noise_limit_quartic.png")
     report.finish()
 
 

@@ -13,6 +13,7 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
+from fpsolve.io.atomic import atomic_path
 from fpsolve.provenance import versions
 
 RESULTS = Path(__file__).parent / "results"
@@ -59,11 +60,19 @@ class Report:
             "rows": self.rows, "claims": self.claims,
         }  # fmt: skip
         path = RESULTS / f"{self.name}_{setting}.json"
-        path.write_text(json.dumps(content, indent=1))
+        with atomic_path(path) as draft:
+            draft.write_text(json.dumps(content, indent=1))
         failed = [claim for claim in self.claims if not claim["holds"]]
         if failed:
             sys.exit(f"{len(failed)} of {len(self.claims)} claims failed")
         self.console.print(f"all {len(self.claims)} claims hold")
+
+
+def save_figure(figure: Any, name: str, **options: Any) -> None:
+    """Write a figure beside the numbers, whole or not at all."""
+    RESULTS.mkdir(exist_ok=True)
+    with atomic_path(RESULTS / name) as draft:
+        figure.savefig(draft, **options)
 
 
 def text(value: Any) -> str:

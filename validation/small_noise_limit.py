@@ -14,7 +14,7 @@ import argparse
 from typing import Any
 
 import numpy as np
-from reporting import RESULTS, Report
+from reporting import RESULTS, Report, save_figure
 
 import fpsolve as fp
 from fpsolve.plotting.small_noise import plot_small_noise, plot_small_noise_spectrum
@@ -139,7 +139,7 @@ def main() -> None:
         "small_noise_spectrum": plot_small_noise_spectrum(spectra),
     }
     for name, figure in figures.items():
-        figure.savefig(RESULTS / f"{name}_{setting}.png", dpi=200)
+        save_figure(figure, f"{name}_{setting}.png", dpi=200)
     report.finish()
 
 

@@ -64,8 +64,11 @@ def check(
 
         check_folder(out, "--out")
         from fpsolve.cli.run import read_config, set_threads
+        from fpsolve.cli.writing import check_outputs
 
         chosen = read_config(config, example)
+        stem = f"{chosen.output.name}-check"
+        check_outputs(out, *(f"{stem}.{ending}" for ending in ("json", "nc", "png")))
         set_threads(threads)
         problem = chosen.build()
         places = at if at else _places(problem)

@@ -51,6 +51,13 @@ Passage = Annotated[
     ),
 ]
 
+# What is drawn, and by which function.
+_FIGURES = {
+    "orbits": "orbits",
+    "coefficients": "energy_coefficients",
+    "eigenfunctions": "energy_eigenfunctions",
+}
+
 
 def energy(
     potential: Kind = "quadratic",
@@ -75,9 +82,11 @@ def energy(
         from fpsolve.io.atomic import check_folder
 
         check_folder(out, "--out")
+        from fpsolve.cli.writing import check_outputs
         from fpsolve.io.energy import tables_dataset
         from fpsolve.reduced.energy import EnergyProcess
 
+        check_outputs(out, "energy.nc", *(f"energy-{name}.png" for name in _FIGURES))
         chosen = make_potential(potential, sigma1, sigma2, slope, exponent)
         process = EnergyProcess(chosen, noise)
         walk = None if passage is None else _passage(process, *passage)
@@ -145,12 +154,8 @@ def _draw(process: EnergyProcess, out: Path) -> None:
     from fpsolve.plotting import energy as plotting
     from fpsolve.plotting.style import RESOLUTION, paper_style
 
-    drawings = {
-        "orbits": plotting.plot_orbits,
-        "coefficients": plotting.plot_energy_coefficients,
-        "eigenfunctions": plotting.plot_energy_eigenfunctions,
-    }
-    for name, plot in drawings.items():
+    for name in _FIGURES:
+        plot = getattr(plotting, f"plot_{_FIGURES[name]}")
         path = out / f"energy-{name}.png"
         with paper_style(), atomic_path(path) as draft:
             plot(process).savefig(draft, dpi=RESOLUTION)

@@ -33,6 +33,7 @@ LARGE, SMALL, BOTH = "large-noise", "small-noise", "both"
 NOISES = {LARGE: (1.4, 2.0, 2.8, 4.0), SMALL: (0.4, 0.2, 0.1)}
 QUICK_NOISES = {LARGE: (1.4, 2.0, 2.8), SMALL: (0.4, 0.2)}
 _WIDTH = 110
+_ENDINGS = ("nc", "png")
 
 Which = Annotated[
     str, typer.Argument(metavar="[WHICH]", help=f"{LARGE}, {SMALL} or {BOTH}.")
@@ -81,11 +82,14 @@ def limits(
     was stopped.
     """
     with reported_errors():
+        from fpsolve.cli.writing import check_outputs
         from fpsolve.io.atomic import check_folder
 
         check_folder(out, "--out")
         chosen = _chosen(which, noise)
         one = make_potential(potential, sigma1, sigma2, slope, exponent)
+        for name in chosen:
+            check_outputs(out, *(f"{name}-{one.kind}.{ending}" for ending in _ENDINGS))
         options = {"quick": quick, "client": scheduler, "workers": workers}
         studies = [
             _study(name, one, noise, out, options, not no_figures) for name in chosen

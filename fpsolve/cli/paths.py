@@ -84,11 +84,13 @@ def _sample(config: PathsConfig, out: Path, seed_from: str) -> None:
     # Not `from fpsolve.cli.progress import`: a test replaces the bar in its module.
     from fpsolve.cli import progress
     from fpsolve.cli.ensemble import print_paths_plan
+    from fpsolve.cli.writing import check_result
     from fpsolve.errors import RunError, RunInterrupted
     from fpsolve.paths import sample_paths
 
     problem = config.build()
     config = config.resolved(problem)
+    check_result(config, out)
     print_paths_plan(config, problem, out, seed_from)
     try:
         with progress.progress_bar() as report:

@@ -78,6 +78,8 @@ Tolerance = Annotated[
         help="Relative tolerance of the gap.", show_default="1e-8, quick 1e-6"
     ),
 ]
+# Of the names of a study's file and figures.
+_ENDINGS = (".nc", ".png", "-variance.png")
 
 
 def rate(
@@ -106,6 +108,7 @@ def rate(
         from fpsolve.io.atomic import check_folder
 
         check_folder(out, "--out")
+        from fpsolve.cli.writing import check_outputs
         from fpsolve.errors import RunInterrupted
 
         amplitudes = noise if noise else _default_noises(quick)
@@ -113,6 +116,9 @@ def rate(
             make_potential(kind, sigma1, sigma2, slope, exponent)
             for kind in potential or ("quadratic", "linear")
         ]
+        for one in chosen:
+            names = (f"rate-{one.kind}{ending}" for ending in _ENDINGS)
+            check_outputs(out, *names, "rate-integral.png")
         options = {
             "quick": quick, "tolerance": tolerance, "client": scheduler,
             "workers": workers,

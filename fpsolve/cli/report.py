@@ -23,7 +23,7 @@ Out = Annotated[
     Path | None,
     typer.Option(
         metavar="FILE.html",
-        help="Where the page goes.",
+        help="Where the page goes; - is the standard output.",
         show_default="beside the first file",
     ),
 ]
@@ -31,6 +31,7 @@ Title = Annotated[
     str | None,
     typer.Option(help="Title of the page.", show_default="it names the results"),
 ]
+_STANDARD_OUTPUT = Path("-")
 
 
 def report(files: Files, out: Out = None, title: Title = None) -> None:
@@ -42,6 +43,10 @@ def report(files: Files, out: Out = None, title: Title = None) -> None:
     """
     with reported_errors():
         from fpsolve.report import report as write_report
+        from fpsolve.report.page import report_text
 
+        if out == _STANDARD_OUTPUT:
+            typer.echo(report_text(files, title=title), nl=False)
+            return
         page = files[0].with_suffix(".html") if out is None else out
         typer.echo(write_report(files, page, title=title))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -50,6 +51,7 @@ def rerun(
     """
     with reported_errors():
         from fpsolve.cli.run import set_threads
+        from fpsolve.cli.writing import check_outputs
         from fpsolve.comparisons.reading import dataset_of, kind_of_dataset
         from fpsolve.io.atomic import check_folder
 
@@ -58,6 +60,7 @@ def rerun(
         kind = kind_of_dataset(old, "FILE")
         status = str(old.attrs.get("status", "finished"))
         target = _target(file, out, status)
+        check_outputs(target.parent, target.name)
         set_threads(threads)
         _announce(old, kind, status)
         given = workers is not None and kind in _SWEEPS
@@ -71,7 +74,7 @@ def _target(file: Path, out: Path, status: str) -> Path:
     """Return where the new result goes; not where the old one is."""
     stem = file.stem.removesuffix("-interrupted") if status != "failed" else file.stem
     target = out / f"{stem}{file.suffix}"
-    if target.resolve() == file.resolve():
+    if os.path.realpath(target) == os.path.realpath(file):
         raise ValueError(
             f"`--out` must not be the folder of the file, got `{out}`; the result "
             "would take its place."

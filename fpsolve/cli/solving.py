@@ -41,7 +41,9 @@ def solve_and_write(
         Leave its folder when the result is written.
     """
     from fpsolve.cli.plan import print_plan, suggestions
+    from fpsolve.cli.writing import check_result
 
+    check_result(config, out)
     print_plan(config, problem, out)
 
     def write(solution: Solution, figures: bool) -> None:

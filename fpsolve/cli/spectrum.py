@@ -76,11 +76,13 @@ def spectrum(
 
         check_folder(out, "--out")
         from fpsolve._checks import check_positive
+        from fpsolve.cli.writing import check_outputs
         from fpsolve.curves import FixedBelt, MovingBelt
         from fpsolve.io.recipes import recipe
         from fpsolve.models import LayDownModel
         from fpsolve.spectral.spectrum import spectrum as compute
 
+        check_outputs(out, "spectrum.nc", "spectrum.png")
         curve = MovingBelt(belt_speed) if belt_speed else FixedBelt()
         chosen = make_potential(potential, sigma1, sigma2, slope, exponent)
         model = LayDownModel(chosen, noise, curve)

@@ -13,7 +13,25 @@ if TYPE_CHECKING:
     from fpsolve.paths import Paths
     from fpsolve.solution import Solution
 
-__all__ = ["write_result"]
+__all__ = ["check_outputs", "check_result", "write_result"]
+
+# What may be appended to the name of a result, and is in the end.
+_ENDINGS = ("", "-interrupted", "-failed")
+
+
+def check_outputs(out: Path, *names: str) -> None:
+    """Raise before anything is computed if a name is taken by what is no file."""
+    from fpsolve.io.targets import check_targets
+
+    check_targets(out / name for name in names)
+
+
+def check_result(config: Any, out: Path) -> None:
+    """Do so for what `write_result` would write."""
+    path = Path(config.output.file_name)
+    named = [path.with_stem(path.stem + ending) for ending in _ENDINGS]
+    used = [one.with_suffix(".toml") for one in named]
+    check_outputs(out, *map(str, (*named, *used)))
 
 
 def write_result(

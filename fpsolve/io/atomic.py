@@ -11,6 +11,8 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from fpsolve._checks import check_path
+from fpsolve.io.staging import REPLACED, staging_folder
+from fpsolve.io.targets import is_pipe, opened_pipe, poured, target_of
 
 __all__ = ["atomic_path", "check_folder", "check_room", "made_folder"]
 
@@ -23,8 +25,10 @@ def atomic_path(path: str | os.PathLike[str]) -> Iterator[Path]:
     """Yield a path to write to; at the end what lies there takes the place of `path`.
 
     After an exception, Ctrl-C included, `path` is as it was and nothing else is left
-    behind. The draft has the same name and suffix and lies on the same file system,
-    so that the last move is one renaming.
+    behind; what a killed process left is removed by the next one that writes there.
+    The draft has the same name and suffix and lies on the same file system, so that
+    the last move is one renaming. A link is followed: the file that it names is
+    replaced, and the link stays. Through a pipe the finished draft is written.
 
     Parameters
     ----------
@@ -34,29 +38,33 @@ def atomic_path(path: str | os.PathLike[str]) -> Iterator[Path]:
     Raises
     ------
     FileNotFoundError
-        If the parent folder does not exist.
+        If the parent folder does not exist, or the path is a link to nothing.
     IsADirectoryError
         If a file is to take the place of a folder.
+    ValueError
+        If the path is a device, a socket, a link in a circle, or a pipe from which no
+        program reads.
     """
-    target = check_path("path", path)
-    if not target.parent.is_dir():
-        raise FileNotFoundError(
-            f"`path` must lie in an existing folder, got `{target}`; create "
-            f"`{target.parent}` first."
-        )
-    if target.is_dir() and not is_store(target):
-        raise IsADirectoryError(
-            f"`path` must not be a folder, got `{target}`; name a file in it."
-        )
-    # A folder instead of a temporary file: the file in it gets the permissions that
-    # the user's umask asks for.
-    staging = Path(tempfile.mkdtemp(prefix=f".{target.name}.", dir=target.parent))
-    try:
-        draft = staging / target.name
+    given = check_path("path", path)
+    target = target_of(given)
+    if is_pipe(target):
+        with _through_pipe(target) as draft:
+            yield draft
+        return
+    with staging_folder(target.parent, target.name) as staging:
+        draft = staging / given.name
         yield draft
-        _move(draft, target, aside=staging / "replaced")
-    finally:
-        shutil.rmtree(staging, ignore_errors=True)
+        _move(draft, target, aside=staging / REPLACED)
+
+
+@contextmanager
+def _through_pipe(path: Path) -> Iterator[Path]:
+    """Yield a path to write to, of which a pipe gets the bytes when it is complete."""
+    home = Path(tempfile.gettempdir())
+    with opened_pipe(path) as pipe, staging_folder(home, path.name) as staging:
+        draft = staging / path.name
+        yield draft
+        poured(draft, pipe)
 
 
 def check_folder(path: str | os.PathLike[str], name: str = "directory") -> Path:
@@ -99,22 +107,19 @@ def made_folder(path: str | os.PathLike[str], name: str = "directory") -> Path:
     return folder
 
 
-def check_room(path: Path, n_bytes: int) -> None:
+def check_room(path: Path, n_bytes: int, draft: Path) -> None:
     """Raise OSError unless a file of n_bytes and what describes it fit on the disk.
+
+    The disk is that of the draft; the message names the path asked for.
 
     To be asked before netCDF is written: HDF5 ends the process, without a word, some
     time after it met a full disk.
     """
-    free, needed = shutil.disk_usage(path.parent).free, n_bytes + DESCRIPTION
+    free, needed = shutil.disk_usage(draft.parent).free, n_bytes + DESCRIPTION
     if not needed <= free:
         mebibytes = f"{needed / 2**20:.0f} MiB needed, {free / 2**20:.0f} MiB free"
         reason = f"{os.strerror(errno.ENOSPC)} ({mebibytes})"
         raise OSError(errno.ENOSPC, reason, str(path))
-
-
-def is_store(path: Path) -> bool:
-    """Whether a folder is a zarr store, the only kind that may be replaced."""
-    return any((path / name).is_file() for name in ("zarr.json", ".zgroup"))
 
 
 def _move(draft: Path, target: Path, aside: Path) -> None:

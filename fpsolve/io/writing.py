@@ -31,6 +31,6 @@ def write_dataset(dataset: xr.Dataset, path: str | os.PathLike[str]) -> Path:
         if path.suffix == ".zarr":
             stamped(dataset).to_zarr(draft, mode="w", consolidated=False)
         else:
-            check_room(path, dataset.nbytes)
+            check_room(path, dataset.nbytes, draft)
             stamped(dataset).to_netcdf(draft, engine="h5netcdf")
     return path

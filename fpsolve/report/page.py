@@ -10,7 +10,7 @@ from typing import Any
 from fpsolve.report.blocks import Section
 from fpsolve.report.reading import existing_file, section_of
 
-__all__ = ["html_page", "report"]
+__all__ = ["html_page", "report", "report_text"]
 
 
 def report(
@@ -60,9 +60,14 @@ def report(
     _check_place(chosen, path)
     # Begun before the figures are drawn, so that a place that does not do is told.
     with atomic_path(path) as draft:
-        page = html_page([section_of(one) for one in chosen], title)
+        page = report_text(chosen, title=title)
         draft.write_text(page, encoding="utf-8", newline="\n")
     return path
+
+
+def report_text(results: Any, *, title: str | None = None) -> str:
+    """Return the page that `report` writes; raises what it does."""
+    return html_page([section_of(one) for one in _listed(results)], title)
 
 
 def html_page(sections: Sequence[Section], title: str | None = None) -> str:
@@ -106,7 +111,7 @@ def _listed(results: Any) -> list[Any]:
 def _check_place(results: Sequence[Any], path: Path) -> None:
     files = [one for one in results if isinstance(one, (str, os.PathLike))]
     for file in {*map(Path, files), *map(existing_file, files)}:
-        if file.resolve() == path.resolve():
+        if os.path.realpath(file) == os.path.realpath(path):
             raise ValueError(
                 f"`path` must not be a result that is reported on, got `{path}`; name "
                 "a file that ends in .html."

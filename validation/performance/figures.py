@@ -175,6 +175,8 @@ def scaling_figure(tables: Tables) -> Figure:
 
 def draw_all(tables: Tables, out: Path) -> None:
     """Draw the figures whose numbers are there."""
+    from fpsolve.io.atomic import atomic_path
+
     for name, parts in FIGURES.items():
         files = [tables.folder / f"{tables.prefix}-{part}.json" for part in parts]
         present = tuple(
@@ -184,7 +186,8 @@ def draw_all(tables: Tables, out: Path) -> None:
         if not present or (draw is scaling_figure and present != parts):
             continue
         numbers = digest(present, tables.folder, tables.prefix)
-        draw(tables).savefig(out / name, dpi=150, metadata={"Numbers": numbers})
+        with atomic_path(out / name) as draft:
+            draw(tables).savefig(draft, dpi=150, metadata={"Numbers": numbers})
         print(f"drawn: {name}")
 
 

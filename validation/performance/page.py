@@ -38,10 +38,13 @@ def refreshed(source: str) -> str:
 
 def main() -> None:
     """Refresh a page in place."""
+    from fpsolve.io.atomic import atomic_path
+
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("page", type=Path, nargs="?", default=PAGE)
     page = parser.parse_args().page
-    page.write_text(refreshed(page.read_text("utf-8")), encoding="utf-8")
+    with atomic_path(page) as draft:
+        draft.write_text(refreshed(page.read_text("utf-8")), encoding="utf-8")
 
 
 if __name__ == "__main__":

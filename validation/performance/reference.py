@@ -116,12 +116,13 @@ def load(problem: Problem, *, quick: bool = False) -> Reference:
 
 def keep(path: Path, reference: Reference) -> None:
     """Write a reference; the file appears complete or not at all."""
+    from fpsolve.io.atomic import atomic_path
+
     path.parent.mkdir(exist_ok=True)
-    partial = path.with_name(f"partial-{path.name}")
-    np.savez_compressed(
-        partial, half_width=reference.half_width, density=reference.density
-    )
-    partial.replace(path)
+    with atomic_path(path) as draft:
+        np.savez_compressed(
+            draft, half_width=reference.half_width, density=reference.density
+        )
 
 
 def read(path: Path) -> Reference:

@@ -78,11 +78,12 @@ def write_part(
 
 def write_json(path: Path, content: dict[str, Any]) -> None:
     """Write the numbers; the file appears complete or not at all."""
+    from fpsolve.io.atomic import atomic_path
+
     path.parent.mkdir(parents=True, exist_ok=True)
-    partial = path.with_suffix(".partial")
     text = json.dumps(rounded(content), indent=1, ensure_ascii=False)
-    partial.write_text(text + "\n", encoding="utf-8")
-    os.replace(partial, path)
+    with atomic_path(path) as draft:
+        draft.write_text(text + "\n", encoding="utf-8")
 
 
 def rounded(value: Any) -> Any:
