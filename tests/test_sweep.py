@@ -307,20 +307,35 @@ def test_progress_counts_the_cases(tmp_path, capsys):
     assert "3/3" in capsys.readouterr().err
 
 
-def test_a_script_without_a_guard_is_told_so(tmp_path):
-    script = tmp_path / "script.py"
-    script.write_text(
-        textwrap.dedent("""
+def test_a_script_without_a_guard_is_not_run_again(tmp_path):
+    found = run_script(tmp_path, """
+        print("here")
         from sweep_functions import square
         from fpsolve.studies.rates.sweep import sweep
-        sweep(square, [{"x": 1}, {"x": 2}], workers=1)
-        """)
-    )
+        cases = sweep(square, [{"x": 1}, {"x": 2}], workers=1)
+        print([case.status for case in cases])
+        """)  # fmt: skip
+    assert found.returncode == 0, found.stderr
+    assert found.stdout == "here\n['finished', 'finished']\n"
+
+
+def test_a_script_without_a_guard_whose_own_function_is_needed_is_told_so(tmp_path):
+    found = run_script(tmp_path, """
+        from fpsolve.studies.rates.sweep import sweep
+        def twice(x):
+            return {"value": 2.0 * x}
+        sweep(twice, [{"x": 1}, {"x": 2}], workers=1)
+        """)  # fmt: skip
+    assert found.returncode == 1
+    assert 'needs the guard `if __name__ == "__main__":`' in found.stderr
+
+
+def run_script(folder, text):
+    script = folder / "script.py"
+    script.write_text(textwrap.dedent(text))
     here = Path(__file__).parent
     path = os.pathsep.join([str(here), str(here.parent)])
-    found = subprocess.run(
+    return subprocess.run(
         [sys.executable, str(script)], capture_output=True, text=True, check=False,
         env={**os.environ, "PYTHONPATH": path},
     )  # fmt: skip
-    assert found.returncode == 1
-    assert 'needs the guard `if __name__ == "__main__":`' in found.stderr

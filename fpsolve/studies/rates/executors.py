@@ -7,10 +7,11 @@ from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Executor, Future, ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
-from multiprocessing.context import SpawnContext
+from multiprocessing.context import SpawnContext, SpawnProcess
 from typing import Any
 
 from fpsolve._checks import check_integer
+from fpsolve.studies.rates.main_module import hidden_main, is_needed
 
 __all__ = ["executor_for", "finished_tasks"]
 
@@ -35,9 +36,14 @@ class SpawnedProcesses:
         self.workers = workers
 
     @contextmanager
-    def pool(self, workers: int | None = None) -> Iterator[ProcessPoolExecutor]:
-        """A pool; its processes are ended when it is left by an exception."""
-        context = _RecordingContext()
+    def pool(
+        self, workers: int | None = None, *, runs_script: bool = True
+    ) -> Iterator[ProcessPoolExecutor]:
+        """A pool; its processes are ended when it is left by an exception.
+
+        Unless `runs_script`, they do not run the user's script again.
+        """
+        context = _RecordingContext(runs_script)
         workers = self.workers if workers is None else workers
         threads = max(1, _cpus() // workers)
         pool = ProcessPoolExecutor(
@@ -53,15 +59,23 @@ class SpawnedProcesses:
 
 
 class _RecordingContext(SpawnContext):
-    """The spawn method, remembering what it started."""
+    """The spawn method, remembering what it started.
 
-    def __init__(self) -> None:
+    Parameters
+    ----------
+    runs_script : bool
+        Whether a new process runs the user's script, as the method does by itself.
+    """
+
+    def __init__(self, runs_script: bool) -> None:
         super().__init__()
         self.started: list[Any] = []
+        self.runs_script = runs_script
 
     def Process(self, *args: Any, **kwargs: Any) -> Any:  # type: ignore[override]
         """Make a process."""
-        process = super().Process(*args, **kwargs)
+        kind = super().Process if self.runs_script else _ScriptlessProcess
+        process: Any = kind(*args, **kwargs)
         self.started.append(process)
         return process
 
@@ -70,6 +84,15 @@ class _RecordingContext(SpawnContext):
         for process in self.started:
             if process.is_alive():
                 process.terminate()
+
+
+class _ScriptlessProcess(SpawnProcess):
+    """A process that does not run the user's script."""
+
+    def start(self) -> None:
+        """Start it."""
+        with hidden_main():
+            super().start()
 
 
 def prepare(threads: int) -> None:
@@ -151,8 +174,9 @@ def _completed(executor: Executor, tasks: Mapping[int, Task]) -> Iterator[Found]
 def _in_processes(made: SpawnedProcesses, tasks: Mapping[int, Task]) -> Iterator[Found]:
     """As `_completed`; a process that dies fails its own task only."""
     left = dict(tasks)
+    runs_script = is_needed(left.values())
     try:
-        with made.pool() as pool:
+        with made.pool(runs_script=runs_script) as pool:
             _check_ready(pool)
             for key, result, error in _completed(pool, left.copy()):
                 if isinstance(error, BrokenProcessPool):
@@ -162,7 +186,7 @@ def _in_processes(made: SpawnedProcesses, tasks: Mapping[int, Task]) -> Iterator
     except BrokenProcessPool:
         # Nobody knows which task killed its process: each gets one of its own.
         for key, task in left.items():
-            with made.pool(1) as pool:
+            with made.pool(1, runs_script=runs_script) as pool:
                 yield from _completed(pool, {key: task})
 
 
