@@ -113,6 +113,9 @@ class StoredDensities(LazyDensities):
         except Exception as error:
             reason = str(error).rstrip(".") or type(error).__name__
             raise FileFormatError(self.path, f"density {index}: {reason}") from error
+        if found.shape != self.shape[1:] or found.dtype != self.dtype:
+            reason = f"its shape is {found.shape}, not {self.shape[1:]}"
+            raise FileFormatError(self.path, f"density {index}: {reason}")
         return found
 
     def __getstate__(self) -> dict[str, Any]:

@@ -332,21 +332,32 @@ class NotRepeatableError(FpsolveError, ValueError):
 
 
 class CheckpointError(RunError):
-    """A checkpoint could not be written; the last good one is kept.
+    """A checkpoint could not be written, or what it holds cannot be read back.
+
+    What is written last is kept.
 
     Parameters
     ----------
     path : str or os.PathLike
         File or folder.
     reason : str
-        What the operating system says, without a final full stop.
+        What the operating system says, or what is damaged, without a final full stop.
     remedy : str
         What is kept, and how to go on.
+    action : str
+        What could not be done.
     """
 
-    def __init__(self, path: str | os.PathLike[str], reason: str, remedy: str) -> None:
+    def __init__(
+        self,
+        path: str | os.PathLike[str],
+        reason: str,
+        remedy: str,
+        *,
+        action: str = "written",
+    ) -> None:
         super().__init__(
-            f"checkpoint `{os.fspath(path)}` cannot be written: {reason}; {remedy}."
+            f"checkpoint `{os.fspath(path)}` cannot be {action}: {reason}; {remedy}."
         )
         self.path = path
         self.reason = reason

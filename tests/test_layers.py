@@ -6,7 +6,7 @@ from pathlib import Path
 PACKAGE = Path(__file__).parents[1] / "fpsolve"
 FLOORS = {
     "errors": 0, "_kernels": 0, "_arrays": 0, "_checks": 0, "_blas": 0, "_threads": 0,
-    "environment": 0, "_compilation": 0, "_digests": 0,
+    "environment": 0, "_compilation": 0, "_digests": 0, "_json": 0,
     "potentials": 1, "curves": 1, "models": 1,
     "cells": 2, "grids": 2, "planes": 2, "initial": 2, "diagnostics": 2,
     "functionals": 2, "circulation": 2, "process": 2, "decay": 2,

@@ -10,6 +10,8 @@ from typing import IO, Any
 
 import numpy as np
 
+from fpsolve.memory import allowed_memory
+
 __all__ = ["DRAFT", "opened_npz", "sync", "write_durably"]
 
 DRAFT = ".draft"
@@ -22,6 +24,8 @@ def write_durably(path: Path, write: Callable[[IO[bytes]], None]) -> None:
     draft beside it, which the next call overwrites. An error leaves no draft.
     """
     draft = path.with_name(path.name + DRAFT)
+    # What a kill left may be anything by now, a link or a pipe too.
+    draft.unlink(missing_ok=True)
     try:
         with draft.open("wb") as file:
             write(file)
@@ -36,9 +40,21 @@ def write_durably(path: Path, write: Callable[[IO[bytes]], None]) -> None:
 
 @contextmanager
 def opened_npz(path: Path) -> Iterator[Mapping[str, Any]]:
-    """Yield the arrays in an .npz; closed whatever is wrong with it."""
+    """Yield the arrays in an .npz; closed whatever is wrong with it.
+
+    Raises
+    ------
+    ValueError
+        If it declares more than fits into memory, or is no file.
+    """
+    # A pipe would be waited for.
+    if not path.is_file():
+        raise ValueError("it is no file")
     # Of a path, numpy would leave a damaged file open.
     with path.open("rb") as file, np.load(file, allow_pickle=False) as members:
+        n_bytes = sum(one.file_size for one in members.zip.infolist())
+        if not n_bytes <= allowed_memory():
+            raise ValueError(f"it declares {n_bytes / 2**30:.3g} GiB, more than memory")
         yield members
 
 

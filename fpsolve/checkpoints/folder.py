@@ -92,6 +92,7 @@ def opened_folder(
     folder = checkpoint.folder
     with ExitStack() as stack:
         with _writing(folder):
+            _check_entries(folder)
             _check_free(folder)
             folder.mkdir(parents=True, exist_ok=True)
             stack.enter_context(locked(folder))
@@ -100,6 +101,19 @@ def opened_folder(
         _check_same(folder, run)
         interrupt = stack.enter_context(deferred_interrupts())
         yield CheckpointFolder(checkpoint, run, p0.shape, interrupt)
+
+
+def _check_entries(folder: Path) -> None:
+    """Raise ValueError if something in it is neither file nor folder.
+
+    Writing to it would reach something else, or wait.
+    """
+    for path in folder.iterdir() if folder.is_dir() else ():
+        if not (path.is_file() or path.is_dir()):
+            raise ValueError(
+                f"`checkpoint` must be a folder of files, got `{folder}`, in which "
+                f"`{path.name}` is none; remove it, or name another folder."
+            )
 
 
 def _check_free(folder: Path) -> None:

@@ -71,7 +71,7 @@ class CheckpointKeeper:
                 return snapshot.step
             warnings.warn(
                 f"checkpoint `{self.files.newest}` is not used: output that belongs to "
-                f"it is missing in `{self.store.folder}`",
+                f"it is missing or damaged in `{self.store.folder}`",
                 UserWarning,
                 stacklevel=2,
             )
@@ -121,7 +121,14 @@ class CheckpointKeeper:
         self, columns: tuple[str, ...], rows: list[dict[str, float]]
     ) -> dict[str, Array]:
         """All records as arrays."""
-        return self.store.series(columns, rows)
+        # Damage makes zarr raise whatever it comes across.
+        try:
+            return self.store.series(columns, rows)
+        except Exception as error:
+            reason = f"it is damaged ({' '.join(str(error).split()).rstrip('.')})"
+            raise CheckpointError(
+                self.store.folder / "series", reason, self._remedy(), action="read"
+            ) from error
 
     def densities(self) -> Any:
         """The saved densities, read when they are asked for."""

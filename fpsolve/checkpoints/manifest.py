@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import warnings
 from collections.abc import Mapping
@@ -10,6 +11,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import IO, Any
 
+from fpsolve._json import bounded_json
 from fpsolve.checkpoints.durable import write_durably
 from fpsolve.errors import FileFormatError
 from fpsolve.provenance import versions
@@ -45,6 +47,7 @@ class Manifest:
             "run": self.run.to_dict(),
             "notes": dict(self.notes),
         }
+        content["checksum"] = _checksum(content)
         text = json.dumps(content, indent=1, ensure_ascii=False)
 
         def write(file: IO[bytes]) -> None:
@@ -90,9 +93,9 @@ def read_manifest(folder: Path) -> Manifest:
             folder, f"it is not a checkpoint of fpsolve (it holds no `{MANIFEST}`)"
         )
     try:
-        content = json.loads(path.read_text(encoding="utf-8"))
+        content = bounded_json(MANIFEST, path.read_text(encoding="utf-8"))
         written = int(content["fpsolve_checkpoint"])
-    except (ValueError, KeyError, TypeError):
+    except (ValueError, KeyError, TypeError, OverflowError):
         raise FileFormatError(path, "it does not describe a checkpoint") from None
     if written > FORMAT:
         raise FileFormatError(
@@ -111,7 +114,27 @@ def _checked(path: Path, content: Mapping[str, Any]) -> Manifest:
         run = RunDescription.from_dict(content["run"])
     except TypeError:
         raise FileFormatError(path, "its `run` is not that of a run") from None
+    _check_types(path, run, content)
     manifest = Manifest(run, content["every"], content["notes"], content["versions"])
     if run.digest != content["digest"]:
         raise FileFormatError(path, "its `run` was changed after it was written")
+    # Older versions wrote none.
+    if content.get("checksum", _checksum(content)) != _checksum(content):
+        raise FileFormatError(path, "it was changed after it was written")
     return manifest
+
+
+def _check_types(path: Path, run: RunDescription, content: Mapping[str, Any]) -> None:
+    tables = run.to_dict() | {name: content[name] for name in ("notes", "versions")}
+    for name, table in tables.items():
+        if not isinstance(table, dict):
+            raise FileFormatError(path, f"its `{name}` must be a table")
+    if not isinstance(content["every"], int | str):
+        raise FileFormatError(path, "its `every` must be a number or text")
+
+
+def _checksum(content: Mapping[str, Any]) -> str:
+    """Return the SHA-256 of all entries but this one."""
+    covered = {name: one for name, one in content.items() if name != "checksum"}
+    text = json.dumps(covered, sort_keys=True, ensure_ascii=False)
+    return hashlib.sha256(text.encode()).hexdigest()

@@ -13,6 +13,7 @@ from typing import IO, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from fpsolve._json import bounded_json
 from fpsolve.checkpoints.durable import opened_npz, write_durably
 from fpsolve.schemes.form import State
 
@@ -160,12 +161,20 @@ class SnapshotFiles:
     def _abouts(self) -> Iterator[tuple[dict[str, Any], Path]]:
         for path in self.paths:
             if path.exists():
-                with _told(path), opened_npz(path) as members:
-                    yield json.loads(str(members["about"])), path
+                with _told(path):
+                    yield self._about(path), path
+
+    def _about(self, path: Path) -> dict[str, Any]:
+        with opened_npz(path) as members:
+            about = bounded_json("about", str(members["about"]))
+        numbers = [about[name] for name in ("number", "step", "s")]
+        if not all(isinstance(one, int | float) for one in numbers):
+            raise ValueError("it does not say where it is")
+        return dict(about)
 
     def _read(self, path: Path) -> Snapshot:
         with opened_npz(path) as members:
-            about = json.loads(str(members["about"]))
+            about = bounded_json("about", str(members["about"]))
             if about.pop("run") != self.run:
                 raise ValueError("it belongs to another run")
             del about["number"]

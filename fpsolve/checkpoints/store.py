@@ -92,10 +92,14 @@ class PassStore:
         return StoredDensities(self.folder / "density", (self.n_saved, *self.shape))
 
     def holds(self, n_saved: int, n_stored: int) -> bool:
-        """Whether chunks of so many densities and rows are there, and complete."""
-        return self._complete("density", n_saved) and self._complete(
-            "series", -(-n_stored // ROWS)
-        )
+        """Whether so many densities and rows are there, and have their checksums."""
+        # Damage makes zarr raise whatever it comes across.
+        try:
+            return self._has("density", n_saved, 1) and self._has(
+                "series", n_stored, min(ROWS, self.n_records)
+            )
+        except Exception:
+            return False
 
     def _append(self, rows: list[Row]) -> None:
         columns = tuple(rows[0])
@@ -145,17 +149,25 @@ class PassStore:
         self._unsynced += [folder / self._key(array.ndim, chunk), folder]
         self._unsynced += [folder / "zarr.json", folder.parent]
 
-    def _complete(self, name: str, n_chunks: int) -> bool:
-        if not n_chunks:
+    def _has(self, name: str, n: int, chunk: int) -> bool:
+        """Whether the first n entries of an array are as they were written."""
+        if not n:
             return True
-        # Damage makes zarr raise whatever it comes across.
-        try:
-            array = self._open(name)
-        except Exception:
+        array = self._open(name)
+        size = (self.n_saves, *self.shape) if name == "density" else (self.n_records,)
+        if array.shape[: len(size)] != size or array.dtype != np.float64:
+            return False
+        if array.chunks != (chunk, *array.shape[1:]):
             return False
         least = int(np.prod(array.chunks)) * array.dtype.itemsize
-        paths = (self.folder / name / self._key(array.ndim, k) for k in range(n_chunks))
-        return all(p.is_file() and p.stat().st_size > least for p in paths)
+        for first in range(0, n, chunk):
+            path = self.folder / name / self._key(array.ndim, first // chunk)
+            # One that is not there would read as NaN, one without its checksum as is.
+            if not (path.is_file() and path.stat().st_size > least):
+                return False
+            # Reading compares the checksum.
+            array[first : min(first + chunk, n)]
+        return True
 
     @staticmethod
     def _key(ndim: int, chunk: int) -> str:

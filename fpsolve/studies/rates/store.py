@@ -71,6 +71,9 @@ class CaseStore:
 
     def read(self, path: Path) -> dict[str, NDArray[Any]] | None:
         """The values of a case, or None if they are not there or damaged."""
+        # A pipe would be waited for.
+        if not path.is_file():
+            return None
         try:
             # Opened here: a damaged archive would leave the file open.
             with path.open("rb") as raw, np.load(raw, allow_pickle=False) as file:
