@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator, Mapping
 from typing import Any
+
+from fpsolve.io.declared import declared
 
 __all__ = ["differing_environment", "differing_parameters"]
 
@@ -13,7 +14,7 @@ _ORIGIN = {
     "provenance", "versions", "environment", "date_created", "command", "configuration",
     "Conventions", "title", "equation", "formula", "verdict", "agrees", "message",
     "radius", "g_max", "gap", "gap_error", "essential", "truncation", "expected_order",
-    "fpsolve_format", "fpsolve_checksums",
+    "fpsolve_format", "fpsolve_checksums", "fpsolve_attributes",
 }  # fmt: skip
 _NONE = "not given"
 _LONGEST = 60
@@ -36,10 +37,11 @@ def differing_environment(
 
 def _parameters(attributes: Mapping[str, Any]) -> dict[str, Any]:
     flat: dict[str, Any] = {}
-    for name, value in attributes.items():
+    about = {**attributes, **declared(attributes)}
+    for name, value in about.items():
         if name not in _ORIGIN and not name.endswith("_version"):
-            flat.update(_flattened(str(name), _parsed(value)))
-    run = _parsed(attributes.get("provenance", "{}")).get("run", {})
+            flat.update(_flattened(str(name), value))
+    run = about.get("provenance", {}).get("run", {})
     # What is an attribute of its own need not be named twice.
     own = {key: value for key, value in run.items() if key not in attributes}
     return {**flat, **dict(_flattened("run", own))}
@@ -47,13 +49,14 @@ def _parameters(attributes: Mapping[str, Any]) -> dict[str, Any]:
 
 def _environment(attributes: Mapping[str, Any]) -> dict[str, Any]:
     """Versions and environment of a result, wherever it keeps them."""
-    origin = {**_parsed(attributes.get("provenance", "{}")), **attributes}
-    versions = _parsed(origin.get("versions", "{}"))
-    environment = dict(_parsed(origin.get("environment", "{}")))
+    about = declared(attributes)
+    origin = {**about.get("provenance", {}), **about}
+    versions = origin.get("versions", {})
+    environment = dict(origin.get("environment", {}))
     # Which BLAS is loaded depends on what else the process did.
     blas = environment.pop("blas", [])
     threads = sorted({str(one.get("threads")) for one in blas})
-    libraries = sorted({f"{one['library']} {one['version']}" for one in blas})
+    libraries = sorted({f"{one.get('library')} {one.get('version')}" for one in blas})
     packages = {**environment.pop("packages", {}), **versions}
     packages.pop("python", None)
     flat = {**packages, **dict(_flattened("", environment))}
@@ -61,16 +64,6 @@ def _environment(attributes: Mapping[str, Any]) -> dict[str, Any]:
         flat["BLAS"] = ", ".join(libraries)
         flat["BLAS threads"] = ", ".join(threads)
     return flat
-
-
-def _parsed(value: Any) -> Any:
-    """Return what an attribute holds; many are JSON."""
-    if isinstance(value, str) and value[:1] in "{[":
-        try:
-            return json.loads(value)
-        except ValueError:
-            return value
-    return value
 
 
 def _flattened(name: str, value: Any) -> Iterator[tuple[str, Any]]:

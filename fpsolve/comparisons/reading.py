@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from fpsolve.io.dataset import FORMAT, to_xarray
+from fpsolve.io.declared import declared
 from fpsolve.io.files import read_dataset
 
 if TYPE_CHECKING:
@@ -72,15 +73,15 @@ def dataset_of(result: Any, argument: str) -> xr.Dataset:
 
 def kind_of_dataset(dataset: xr.Dataset, argument: str) -> str:
     """Return the key of `KINDS`; ValueError unless it is a result of fpsolve."""
-    about = dataset.attrs
-    kind = _TITLES.get(str(about.get("title", "")), "")
+    about = declared(dataset.attrs)
+    kind = _TITLES.get(about.get("title", ""), "")
     if "fpsolve_format" in about:
-        if int(about["fpsolve_format"]) > FORMAT:
+        if about["fpsolve_format"] > FORMAT:
             raise ValueError(
                 f"`{argument}` must have a layout up to {FORMAT} to be read, got "
-                f"{int(about['fpsolve_format'])}; update fpsolve."
+                f"{about['fpsolve_format']}; update fpsolve."
             )
-        kind = str(about.get("fpsolve_kind", "solution"))
+        kind = about.get("fpsolve_kind", "solution")
     if kind not in KINDS:
         raise ValueError(
             f"`{argument}` must be a result of fpsolve, got a dataset of something "

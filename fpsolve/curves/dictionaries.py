@@ -67,7 +67,7 @@ def curve_from_dict(description: Mapping[str, Any]) -> Curve:
             f"`curve` must not be of your own code to be read back, got {kind!r}; "
             "build it again in Python."
         )
-    if kind not in KINDS:
+    if not (isinstance(kind, str) and kind in KINDS):
         known = ", ".join(repr(name) for name in KINDS)
         raise ValueError(f"`kind` of a curve must be one of {known}, got {kind!r}.")
     return construct(KINDS[kind], kind, parameters)

@@ -99,16 +99,20 @@ def read_model(
     """Return the model, or None with a warning if it was made of a user's functions.
 
     Its description and equation are added to the provenance then.
+
+    Parameters
+    ----------
+    attributes : mapping
+        As `fpsolve.io.declared.declared` returns them.
+    provenance : dict
     """
-    description = json.loads(attributes["model"])
-    if not isinstance(description, Mapping):
-        raise ValueError(f"`model` must describe a model, got {description!r}")
+    description = attributes["model"]
     try:
         return LayDownModel.from_dict(description)
     except ValueError as error:
         if not _of_a_user(description):
             raise
-        provenance["model_description"] = attributes["model"]
+        provenance["model_description"] = to_json(description)
         provenance["equation"] = attributes["equation"]
         warnings.warn(
             f"the model could not be read back, so `model` is None: {error}",

@@ -2,9 +2,9 @@
 
 Neither netCDF nor zarr protects plain numbers: a flipped bit is another number, and a
 chunk that is missing reads as a fill value. The digests cover every variable (name,
-dimensions, shape, type, labels, bytes) and all attributes. They are kept in one
-attribute, and a file without it, of an older version or another program, is read as it
-is.
+dimensions, shape, type, labels, bytes) and all attributes that were written; what
+another program adds to the file is not looked at. They are kept in one attribute, and a
+file without it, of an older version or another program, is read as it is.
 """
 
 from __future__ import annotations
@@ -16,27 +16,53 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from fpsolve._json import bounded_json
+
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["CHECKSUMS", "digest_of", "stamped", "verified", "with_digest"]
+__all__ = [
+    "CHECKSUMS",
+    "covered_variables",
+    "digest_of",
+    "stamped",
+    "verified",
+    "with_digest",
+]
 
 CHECKSUMS = "fpsolve_checksums"
+# Names of the attributes that the digest covers, itself among them.
+_COVERED = "fpsolve_attributes"
 
 # In the place of a variable's name.
 _ATTRIBUTES = "attributes of the file"
-# What libraries add to a file of their own accord.
-_FOREIGN = (CHECKSUMS, "coordinates")
+# What libraries and tools add to a file of their own accord. Files of older versions do
+# not name their attributes.
+_FOREIGN = frozenset((
+    CHECKSUMS, "coordinates", "history", "history_of_appended_files", "NCO", "CDO",
+    "CDI", "nco_openmp_thread_number", "_NCProperties",
+))  # fmt: skip
 _LABELS = ("long_name", "units")
 
 
 def stamped(dataset: xr.Dataset) -> xr.Dataset:
     """Return the dataset with the attribute that holds its checksums."""
-    return dataset.assign_attrs({CHECKSUMS: json.dumps(_digests(dataset))})
+    names = sorted({*map(str, dataset.attrs), _COVERED} - {CHECKSUMS})
+    named = dataset.assign_attrs({_COVERED: json.dumps(names)})
+    return named.assign_attrs({CHECKSUMS: json.dumps(_digests(named))})
+
+
+def covered_variables(attributes: Mapping[Any, Any]) -> frozenset[str] | None:
+    """Return the names of the variables with a checksum; None if there are none."""
+    if CHECKSUMS not in attributes:
+        return None
+    return frozenset(_written(attributes)) - {_ATTRIBUTES}
 
 
 def verified(dataset: xr.Dataset) -> xr.Dataset:
-    """Return the dataset without its checksums, which must fit.
+    """Return what was written, without its checksums, which must fit.
+
+    Variables and attributes that were added later are left out.
 
     Raises
     ------
@@ -45,19 +71,22 @@ def verified(dataset: xr.Dataset) -> xr.Dataset:
     """
     if CHECKSUMS not in dataset.attrs:
         return dataset
-    written = json.loads(dataset.attrs[CHECKSUMS])
+    written = _written(dataset.attrs)
+    dataset = dataset.drop_vars(
+        [one for one in dataset.variables if one not in written]
+    )
     found = _digests(dataset)
     damaged = [name for name in written if found.get(name) != written[name]]
-    damaged += [name for name in found if name not in written]
     if damaged:
         names = ", ".join(f"`{name}`" for name in damaged)
         raise ValueError(
             f"it is not what was written: the checksum of {names} does not fit; make "
             "it again, or take a copy from before it was damaged or changed"
         )
-    attributes = {name: one for name, one in dataset.attrs.items() if name != CHECKSUMS}
     plain = dataset.copy(deep=False)
-    plain.attrs = attributes
+    kept = _covered(dataset.attrs)
+    kept.pop(_COVERED, None)
+    plain.attrs = kept
     return plain
 
 
@@ -99,13 +128,27 @@ def _digests(dataset: xr.Dataset) -> dict[str, str]:
 
 
 def _attributes_digest(attributes: Mapping[Any, Any]) -> str:
-    own = {
-        str(name): _plain(value)
-        for name, value in attributes.items()
-        if name not in _FOREIGN
-    }
+    own = {name: _plain(value) for name, value in _covered(attributes).items()}
     text = json.dumps(own, sort_keys=True)
     return hashlib.blake2b(text.encode(), digest_size=16).hexdigest()
+
+
+def _written(attributes: Mapping[Any, Any]) -> dict[str, Any]:
+    written = bounded_json(CHECKSUMS, attributes[CHECKSUMS])
+    if not isinstance(written, dict):
+        raise ValueError(f"`{CHECKSUMS}` must be a table, got something else.")
+    return written
+
+
+def _covered(attributes: Mapping[Any, Any]) -> dict[str, Any]:
+    """Return the attributes that a digest covers; those of others may be there too."""
+    named = {str(name): value for name, value in attributes.items()}
+    if _COVERED not in named:
+        return {name: one for name, one in named.items() if name not in _FOREIGN}
+    names = bounded_json(_COVERED, named[_COVERED])
+    if not isinstance(names, list):
+        raise ValueError(f"`{_COVERED}` must be a list, got something else.")
+    return {name: one for name, one in named.items() if name in set(map(str, names))}
 
 
 def _type_name(dtype: np.dtype[Any]) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib
 from typing import TYPE_CHECKING, Any
 
+from fpsolve.io.declared import declared
 from fpsolve.paths import Paths
 from fpsolve.solution import Solution
 
@@ -100,21 +101,23 @@ def from_xarray(dataset: xr.Dataset) -> Result:
     UserWarning
         If the model could not be read back.
     """
-    written = dataset.attrs.get("fpsolve_format")
+    about = declared(dataset.attrs)
+    written = about.get("fpsolve_format")
     if written is None:
+        if "versions" in about:
+            raise ValueError(
+                f"it holds a study, {about.get('title', '')!r}, and no single result; "
+                "`fpsolve report` and `compare` read it, and xarray opens it"
+            )
         raise ValueError(
             "it is not a result of fpsolve (attribute `fpsolve_format` is missing)"
         )
-    if not str(written).isdecimal():
+    if written > FORMAT:
         raise ValueError(
-            f"its layout must be a number up to {FORMAT}, got {str(written)!r}"
-        )
-    if int(written) > FORMAT:
-        raise ValueError(
-            f"it has layout {int(written)}, this version of fpsolve reads up to "
+            f"it has layout {written}, this version of fpsolve reads up to "
             f"{FORMAT}; update fpsolve"
         )
-    kind = str(dataset.attrs.get("fpsolve_kind", "solution"))
+    kind = about.get("fpsolve_kind", "solution")
     if kind not in _MODULES:
         known = ", ".join(map(repr, _MODULES))
         raise ValueError(

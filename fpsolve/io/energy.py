@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,7 +14,10 @@ from fpsolve.io.attributes import (
     origin,
     to_json,
 )
+from fpsolve.io.declared import declared
+from fpsolve.io.layout import check_counts, check_dimensions, check_run
 from fpsolve.io.recipes import recipe
+from fpsolve.io.variables import read_errors
 from fpsolve.potentials import potential_from_dict, potential_to_dict
 
 if TYPE_CHECKING:
@@ -45,6 +47,7 @@ _NEEDED = ("s", "s_step", "cell_mass")
 _NEEDED_ATTRIBUTES = (
     "potential", "noise", "n_cells", "signed", "method", "ds", "status", "provenance",
 )  # fmt: skip
+_DIMENSIONS = {"s": ("s",), "s_step": ("s_step",), "cell_mass": ("s", "g")}
 _FAMILIES = ("even", "odd")
 
 
@@ -113,29 +116,29 @@ def from_xarray(dataset: xr.Dataset) -> EnergySolution:
     from fpsolve.reduced.energy import EnergyProcess, EnergySolution
 
     check_complete(dataset, _NEEDED, _NEEDED_ATTRIBUTES)
-    about = dataset.attrs
-    potential = potential_from_dict(json.loads(about["potential"]))
+    about = declared(dataset.attrs)
+    check_counts("n_cells", about["n_cells"], dataset["cell_mass"].shape[-1],
+                 "`cell_mass`")  # fmt: skip
+    check_dimensions(dataset, _DIMENSIONS)
+    check_run(dataset, about)
+    potential = potential_from_dict(about["potential"])
     process = EnergyProcess(potential, float(about["noise"]))
-    errors = {
-        str(name).removesuffix("_error"): variable.values
-        for name, variable in dataset.data_vars.items()
-        if str(name).endswith("_error")
-    }
+    errors = read_errors(dataset)
     series = {name: dataset[name].values for name in _SERIES if name in dataset}
     return EnergySolution(
         process=process,
-        grid=process.grid(int(about["n_cells"]), bool(about["signed"])),
-        method=str(about["method"]),
+        grid=process.grid(about["n_cells"], bool(about["signed"])),
+        method=about["method"],
         ds=float(about["ds"]),
         series={"s": dataset["s_step"].values, **series},
         errors=errors or None,
         saved_s=dataset["s"].values,
         masses=dataset["cell_mass"].values,
-        provenance=json.loads(about["provenance"]),
+        provenance=about["provenance"],
         initial_masses=(
             dataset["initial_mass"].values if "initial_mass" in dataset else None
         ),
-        status=str(about["status"]),
+        status=about["status"],
     )
 
 

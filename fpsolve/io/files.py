@@ -14,8 +14,10 @@ from typing import TYPE_CHECKING, Any
 from fpsolve._checks import check_path
 from fpsolve.errors import FileFormatError
 from fpsolve.io.atomic import atomic_path, check_room
-from fpsolve.io.checksums import stamped, verified
+from fpsolve.io.checksums import covered_variables, stamped, verified
 from fpsolve.io.dataset import from_xarray, to_xarray
+from fpsolve.io.declared import declared
+from fpsolve.io.sizes import check_sizes
 from fpsolve.io.streaming import append_densities, lazy_densities, without_densities
 from fpsolve.solution import Solution
 
@@ -51,7 +53,8 @@ def save(
     ----------
     result : Solution, Paths, HydrodynamicSolution or EnergySolution
     path : str or os.PathLike
-        Final place; its folder must exist.
+        Final place; its folder must exist. A link is followed to the file that it
+        names; through a pipe that is read the finished file is written.
     engine : {"h5netcdf", "zarr"}, optional
         netCDF-4 or zarr; by default zarr for a path that ends in ".zarr".
 
@@ -63,13 +66,15 @@ def save(
     Raises
     ------
     ValueError
-        If the engine is unknown.
+        If the engine is unknown, or the path is a device, a socket, a link in a circle,
+        or a pipe that nobody reads.
     TypeError
         If it is no result, or the path no path.
     ImportError
         If zarr is asked for and not installed.
     FileNotFoundError, IsADirectoryError
-        If the folder does not exist, or the path is a folder of something else.
+        If the folder does not exist, the path is a link to nothing, or a folder of
+        something else.
     """
     path = check_path("path", path)
     engine = _engine_of(path) if engine is None else engine
@@ -85,7 +90,8 @@ def save(
         if engine == "zarr":
             dataset.to_zarr(draft, mode="w", consolidated=False)
         else:
-            check_room(path, _plain_bytes(dataset) + getattr(lazy, "nbytes", 0))
+            needed = _plain_bytes(dataset) + getattr(lazy, "nbytes", 0)
+            check_room(path, needed, draft)
             dataset.to_netcdf(draft, engine="h5netcdf", encoding=_encoding(dataset))
         if lazy is not None:
             append_densities(draft, engine, lazy)
@@ -105,7 +111,8 @@ def load(path: str | os.PathLike[str]) -> Any:
     FileNotFoundError
         If there is nothing at `path`.
     FileFormatError
-        If the file is truncated, damaged, or not a result of fpsolve.
+        If the file is truncated, damaged, not a result of fpsolve, or declares more
+        than fits into memory.
     ImportError
         If it is a zarr store and zarr is not installed.
 
@@ -131,20 +138,24 @@ def read_dataset(path: str | os.PathLike[str]) -> xr.Dataset:
     Raises
     ------
     FileNotFoundError, FileFormatError, ImportError
-        As for `load`; what is in the dataset is not looked at.
+        As for `load`. Attributes have the types that fpsolve gives them; what else is
+        in the dataset is not looked at.
     """
     path = check_path("path", path)
     if not path.exists():
         raise FileNotFoundError(f"`path` must exist to be read, got `{path}`.")
     engine = "zarr" if path.is_dir() else "h5netcdf"
     check_engine(engine)
-    if path.is_file() and not _has_signature(path):
+    # Of a pipe reading would wait, perhaps for ever.
+    if engine == "h5netcdf" and not (path.is_file() and _has_signature(path)):
         raise FileFormatError(
             path, "it is not a netCDF-4 file; name one that fpsolve wrote"
         )
     dataset = _undamaged(path, engine)
     with reported_damage(path, Exception):
-        return verified(dataset)
+        found = verified(dataset)
+        declared(found.attrs)
+        return found
 
 
 def _undamaged(path: Path, engine: str) -> xr.Dataset:
@@ -154,6 +165,8 @@ def _undamaged(path: Path, engine: str) -> xr.Dataset:
         warnings.simplefilter("ignore")
         try:
             return _read(path, engine)
+        except FileFormatError:
+            raise
         # A damaged file makes the libraries below raise whatever they come across.
         except Exception as error:
             reason = " ".join(str(error).split()).rstrip(".") or type(error).__name__
@@ -220,10 +233,20 @@ def _read(path: Path, engine: str) -> xr.Dataset:
 
     # No value is to be decoded: every array is stored as it is.
     options: dict[str, Any] = {"mask_and_scale": False, "decode_times": False}
+    # An index would be read before its size is known.
+    options["create_default_indexes"] = False
     if engine == "zarr":
         options["consolidated"] = False
-    with xr.open_dataset(path, engine=engine, **options) as dataset:
-        return dataset.load()
+    with xr.open_dataset(path, engine=engine, **options) as opened:
+        covered = covered_variables(opened.attrs)
+        if covered is not None:
+            opened = opened.drop_vars([one for one in opened.variables
+                                       if one not in covered])  # fmt: skip
+        check_sizes(path, opened)
+        read = opened.load()
+        data = {name: read.variables[name] for name in read.data_vars}
+        coordinates = {name: read.variables[name] for name in read.coords}
+        return xr.Dataset(data, coordinates, read.attrs)
 
 
 def _encoding(dataset: xr.Dataset) -> dict[Any, dict[str, Any]]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,6 +14,8 @@ from fpsolve.io.attributes import (
     read_model,
     to_json,
 )
+from fpsolve.io.declared import declared
+from fpsolve.io.layout import check_plane_layout
 from fpsolve.io.variables import COORDINATES, long_name, read_errors, read_series
 from fpsolve.planes import PlaneGrid
 from fpsolve.reduced.hydrodynamic import HydrodynamicLimit, HydrodynamicSolution
@@ -96,14 +97,16 @@ def from_xarray(dataset: xr.Dataset) -> HydrodynamicSolution:
         If the model was made of a user's own functions; `limit` is None then.
     """
     check_complete(dataset, _NEEDED, _NEEDED_ATTRIBUTES)
-    attributes = dataset.attrs
-    provenance = json.loads(attributes["provenance"])
+    attributes = declared(dataset.attrs)
+    provenance = attributes["provenance"]
+    grid = PlaneGrid.from_dict(attributes["grid"])
+    check_plane_layout(dataset, grid, attributes)
     model = read_model(attributes, provenance)
     start = dataset["initial_density"].values if "initial_density" in dataset else None
     return HydrodynamicSolution(
         limit=None if model is None else HydrodynamicLimit(model),
-        grid=PlaneGrid.from_dict(json.loads(attributes["grid"])),
-        method=str(attributes["method"]),
+        grid=grid,
+        method=attributes["method"],
         ds=float(attributes["ds"]),
         series=read_series(dataset, "s_step"),
         saved_s=dataset["s"].values,
@@ -111,7 +114,7 @@ def from_xarray(dataset: xr.Dataset) -> HydrodynamicSolution:
         errors=read_errors(dataset) or None,
         provenance=provenance,
         initial_density=start,
-        status=str(attributes["status"]),
+        status=attributes["status"],
     )
 
 

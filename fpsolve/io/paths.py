@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
@@ -18,7 +17,15 @@ from fpsolve.io.attributes import (
     read_model,
     to_json,
 )
+from fpsolve.io.declared import declared
 from fpsolve.io.laws import describe_law, law_variables, read_law
+from fpsolve.io.layout import (
+    check_counts,
+    check_dimensions,
+    check_increasing,
+    check_status,
+    check_step,
+)
 from fpsolve.io.variables import SERIES
 from fpsolve.models import LayDownModel
 from fpsolve.paths import Paths
@@ -109,10 +116,10 @@ def from_xarray(dataset: xr.Dataset) -> Paths:
         If the model or the law of the start could not be read back.
     """
     check_complete(dataset, _NEEDED, _NEEDED_ATTRIBUTES)
-    attributes = dataset.attrs
-    provenance = json.loads(attributes["provenance"])
-    ensemble = _read_ensemble(dataset, provenance)
-    counts, outside = _read_counts(dataset)
+    attributes = declared(dataset.attrs)
+    provenance = attributes["provenance"]
+    ensemble = _read_ensemble(dataset, attributes, provenance)
+    counts, outside = _read_counts(dataset, ensemble.grid)
     return Paths(
         ensemble=ensemble,
         s=dataset["s"].values,
@@ -120,10 +127,10 @@ def from_xarray(dataset: xr.Dataset) -> Paths:
         sums=dataset["moment_sums"].values,
         counts=counts,
         outside=outside,
-        start=_read_start(dataset, ensemble),
+        start=_read_states(dataset, "start_", ensemble.keep),
         end=_read_states(dataset, "end_", ensemble.keep),
-        status=str(attributes["status"]),
-        message=str(attributes["message"]),
+        status=attributes["status"],
+        message=attributes["message"],
         provenance=provenance,
     )
 
@@ -253,20 +260,22 @@ def _attributes(paths: Paths) -> dict[str, Any]:
     }
 
 
-def _read_ensemble(dataset: xr.Dataset, provenance: dict[str, Any]) -> Ensemble:
-    attributes = dataset.attrs
-    law = json.loads(attributes["initial"])
+def _read_ensemble(
+    dataset: xr.Dataset, attributes: Mapping[str, Any], provenance: dict[str, Any]
+) -> Ensemble:
+    _check_layout(dataset, attributes)
+    law = attributes["initial"]
     model: Any = read_model(attributes, provenance)
     return Ensemble(
         model=model,
-        n_paths=int(attributes["n_paths"]),
+        n_paths=attributes["n_paths"],
         schedule=_read_schedule(attributes),
         seed=int(attributes["seed"]),
-        method=str(attributes["method"]),
+        method=attributes["method"],
         law=read_law(law, dataset, provenance),
         keep=bool(attributes["kept"]),
         grid=(
-            PhaseSpaceGrid.from_dict(json.loads(attributes["grid"]))
+            PhaseSpaceGrid.from_dict(attributes["grid"])
             if "grid" in attributes
             else None
         ),
@@ -277,10 +286,32 @@ def _read_schedule(attributes: Mapping[str, Any]) -> Schedule:
     return Schedule(
         start=float(attributes["s_start"]),
         ds=float(attributes["ds"]),
-        n_steps=int(attributes["n_steps"]),
+        n_steps=attributes["n_steps"],
         records=(),
-        saves=tuple(json.loads(attributes["saved_steps"])),
+        saves=tuple(attributes["saved_steps"]),
     )
+
+
+def _check_layout(dataset: xr.Dataset, attributes: Mapping[str, Any]) -> None:
+    """Raise ValueError unless numbers of paths and steps are those of the arrays."""
+    check_dimensions(dataset, {"s": ("s",), "moment_sums": ("s", "sum")})
+    check_increasing("s", dataset["s"].values)
+    check_step(attributes["ds"])
+    check_status(attributes["status"])
+    n_saved, places = dataset.sizes["s"], attributes["saved_steps"]
+    if len(places) != n_saved:
+        raise ValueError(
+            f"`saved_steps` must be {n_saved} steps as in `s`, got {len(places)}"
+        )
+    if any(step > attributes["n_steps"] for step in places):
+        raise ValueError(
+            f"`n_steps` must be the last step, got {attributes['n_steps']} before "
+            f"{max(places)}"
+        )
+    if attributes["kept"]:
+        check_complete(dataset, ("xi", "tau", "turns"), ())
+        check_dimensions(dataset, {"xi": ("s", "path", "component")})
+        check_counts("n_paths", attributes["n_paths"], dataset.sizes["path"], "`xi`")
 
 
 def _read_states(dataset: xr.Dataset, prefix: str, kept: bool) -> Array:
@@ -297,21 +328,11 @@ def _read_states(dataset: xr.Dataset, prefix: str, kept: bool) -> Array:
     return states
 
 
-def _read_start(dataset: xr.Dataset, ensemble: Ensemble) -> Array:
-    """States at step 0; older files of paths that went on have others, and say so."""
-    if not dataset.attrs.get("first_step", 0):
-        return _read_states(dataset, "start_", ensemble.keep)
-    if ensemble.law is None:
-        raise ValueError(
-            "paths that went on from others must be known from their start, got a file "
-            "of an older version and a law of the start that cannot be read back; "
-            "sample them again."
-        )
-    return ensemble.initial_state(0, ensemble.n_paths)
-
-
-def _read_counts(dataset: xr.Dataset) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    if "grid" not in dataset.attrs:
+def _read_counts(
+    dataset: xr.Dataset, grid: PhaseSpaceGrid | None
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    if grid is None:
         return np.empty((0, 0, 0, 0), np.int64), np.empty(0, np.int64)
     check_complete(dataset, ("counts", "outside"), ())
+    check_counts("grid", grid.shape, dataset["counts"].shape[1:], "`counts`")
     return dataset["counts"].values, dataset["outside"].values

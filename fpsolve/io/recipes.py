@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
 
+from fpsolve._checks import shown
 from fpsolve.grids import PhaseSpaceGrid
 from fpsolve.identity import digest_or_none
 from fpsolve.io.attributes import to_json
+from fpsolve.io.declared import declared
 from fpsolve.io.laws import FORMULAS, law_from_formula
 from fpsolve.models import LayDownModel
 from fpsolve.planes import PlaneGrid
@@ -72,10 +73,14 @@ def read_recipe(text: str, given: Mapping[str, Any]) -> tuple[str, dict[str, Any
     ------
     UserCodeError
         If an argument that is not given was a user's own code.
-    ValueError, KeyError, TypeError
+    ValueError
         If the text is none that `recipe` wrote.
     """
-    content = json.loads(text)
+    content = declared({RECIPE: text})[RECIPE]
+    if not {"function", "arguments"} <= content.keys():
+        raise ValueError(
+            f"`{RECIPE}` must name a function and its arguments, got {shown(content)}."
+        )
     arguments = {
         name: given[name] if name in given else _read(name, value)
         for name, value in content["arguments"].items()
@@ -121,6 +126,8 @@ def _read(argument: str, value: Any) -> Any:
     if len(value) == 1 and kind in _READERS:
         try:
             return _READERS[kind](value[kind])
-        except ValueError as error:
+        except KeyError as error:
+            raise UserCodeError(argument, f"without {error}") from None
+        except (ValueError, TypeError) as error:
             raise UserCodeError(argument, str(error)) from None
     return {name: _read(argument, one) for name, one in value.items()}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import json
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,6 +16,7 @@ from fpsolve.io.attributes import (
     read_model,
     to_json,
 )
+from fpsolve.io.declared import declared
 from fpsolve.io.layout import check_solution_layout
 from fpsolve.io.variables import (
     COORDINATES,
@@ -112,14 +113,14 @@ def from_xarray(dataset: xr.Dataset) -> Solution:
     UserWarning
         If the model could not be read back.
     """
-    attributes = dataset.attrs
     check_complete(dataset, _NEEDED, _NEEDED_ATTRIBUTES)
-    provenance = json.loads(attributes["provenance"])
+    attributes = declared(dataset.attrs)
+    provenance = attributes["provenance"]
     model = read_model(attributes, provenance)
     errors = read_errors(dataset)
-    grid = PhaseSpaceGrid.from_dict(json.loads(attributes["grid"]))
-    scheme = json.loads(attributes["scheme"])
-    check_solution_layout(dataset, grid, scheme)
+    grid = PhaseSpaceGrid.from_dict(attributes["grid"])
+    scheme = attributes["scheme"]
+    check_solution_layout(dataset, grid, attributes)
     return Solution(
         model=model,
         grid=grid,
@@ -129,11 +130,11 @@ def from_xarray(dataset: xr.Dataset) -> Solution:
         saved_s=dataset["s"].values,
         densities=dataset["density"].values,
         entropy_floor=float(dataset["entropy_floor"]),
-        status=str(attributes["status"]),
-        message=str(attributes["message"]),
+        status=attributes["status"],
+        message=attributes["message"],
         errors=errors or None,
         provenance=provenance,
-        **_read_start(dataset),
+        **_read_start(dataset, provenance),
     )
 
 
@@ -156,12 +157,12 @@ def _saves_start(saved_s: Any, s: Any) -> bool:
     return bool(saved_s.size and s.size and saved_s[0] == s[0])
 
 
-def _read_start(dataset: xr.Dataset) -> dict[str, Any]:
+def _read_start(dataset: xr.Dataset, provenance: Mapping[str, Any]) -> dict[str, Any]:
     p0 = reference = None
     if "initial_density" in dataset:
         p0 = dataset["initial_density"].values
     # Of an older file it is not known whether the first density was the initial one.
-    elif "run" in json.loads(dataset.attrs["provenance"]) and _saves_start(
+    elif "run" in provenance and _saves_start(
         dataset["s"].values, dataset["s_step"].values
     ):
         p0 = dataset["density"].values[0]

@@ -237,14 +237,13 @@ def _draw_integral(axes: Axes, dataset: xr.Dataset, colour: str) -> None:
 
 def _theory(dataset: xr.Dataset) -> dict[str, np.ndarray]:
     """Bounds and asymptotes at many noises, where the potential can be made again."""
-    import json
-
+    from fpsolve.io.declared import declared
     from fpsolve.potentials import potential_from_dict
     from fpsolve.studies.rates.dataset import theory_curves
 
     noise = dataset["noise"].to_numpy()
     try:
-        potential = potential_from_dict(json.loads(dataset.attrs["potential"]))
+        potential = potential_from_dict(declared(dataset.attrs)["potential"])
     except ValueError:
         names = ("hypocoercive_bound", "averaging_bound", "small_noise_asymptote",
                  "large_noise_asymptote")  # fmt: skip

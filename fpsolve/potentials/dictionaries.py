@@ -73,7 +73,7 @@ def potential_from_dict(description: Mapping[str, Any]) -> Potential:
             f"`potential` must not be of your own code to be read back, got {kind!r}; "
             "build it again in Python."
         )
-    if kind not in KINDS:
+    if not (isinstance(kind, str) and kind in KINDS):
         known = ", ".join(repr(name) for name in KINDS)
         raise ValueError(f"`kind` of a potential must be one of {known}, got {kind!r}.")
     return construct(KINDS[kind], kind, parameters)

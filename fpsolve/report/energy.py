@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from fpsolve.io.declared import declared
 from fpsolve.report.blocks import Block, Facts, Figure, Paragraph, Part, Section, Table
 from fpsolve.report.equations import energy_equations, potential_equation
 from fpsolve.report.figures import embedded
@@ -30,12 +31,12 @@ _FAMILIES = {"even": "of |G|", "odd": "of the sign of G"}
 
 def section(dataset: xr.Dataset, source: str) -> Section:
     """Return the section of a page about the tables of `fpsolve energy`."""
-    about, process = dataset.attrs, _process(dataset)
+    about, process = declared(dataset.attrs), _process(dataset)
     items = [
         ("potential", f"B = {about['formula']}"),
-        ("noise", f"A = {float(about['noise']):g}"),
-        ("circle", f"r = {float(about['radius']):.6g}"),
-        ("largest energy", f"g_max = {float(about['g_max']):.6g}"),
+        ("noise", f"A = {about['noise']:g}"),
+        ("circle", f"r = {about['radius']:.6g}"),
+        ("largest energy", f"g_max = {about['g_max']:.6g}"),
     ]
     columns = [[f"{float(value):.5g}" for value in dataset[name]] for name in
                COEFFICIENTS]  # fmt: skip
@@ -66,7 +67,7 @@ def _process(dataset: xr.Dataset) -> EnergyProcess | None:
     potential = potential_of(dataset)
     if potential is None:
         return None
-    return EnergyProcess(potential, float(dataset.attrs["noise"]))
+    return EnergyProcess(potential, declared(dataset.attrs)["noise"])
 
 
 def _equations(process: EnergyProcess | None) -> list[Block]:

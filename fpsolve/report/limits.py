@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import json
 import math
 from typing import TYPE_CHECKING
 
+from fpsolve.io.declared import declared
 from fpsolve.report.blocks import (
     Block,
     Equation,
@@ -42,16 +42,16 @@ _SMALL_NOTE = (
 
 def large_section(dataset: xr.Dataset, source: str) -> Section:
     """Return the section of a page about the limit of much noise."""
-    about = dataset.attrs
-    start = json.loads(about["p0"])
+    about = declared(dataset.attrs)
+    start = dict(about["p0"])
     items = [
         ("potential", f"B = {about['formula']}"),
         ("noises", _noises(dataset)),
-        ("slow length s/A²", f"{float(about['slow_length']):g}"),
-        ("belt speed", f"v = {float(about['belt_speed_scale']):g}/A², or "
-                       f"v = {float(about['fixed_speed']):g} where it is fixed"),
+        ("slow length s/A²", f"{about['slow_length']:g}"),
+        ("belt speed", f"v = {about['belt_speed_scale']:g}/A², or "
+                       f"v = {about['fixed_speed']:g} where it is fixed"),
         ("start", f"{start.pop('kind')}({entries(start)})"),
-        ("resolution", "quick" if int(about["quick"]) else "full"),
+        ("resolution", "quick" if about["quick"] else "full"),
     ]  # fmt: skip
     meanings = (
         str(meaning).replace("e^{−B}", "e⁻ᴮ")
@@ -81,9 +81,10 @@ def large_section(dataset: xr.Dataset, source: str) -> Section:
 
 def small_section(dataset: xr.Dataset, source: str) -> Section:
     """Return the section of a page about the limit of little noise."""
-    options = json.loads(dataset.attrs["options"])
+    about = declared(dataset.attrs)
+    options = about["options"]
     items = [
-        ("potential", f"B = {dataset.attrs['formula']}"),
+        ("potential", f"B = {about['formula']}"),
         ("noises", _noises(dataset)),
         ("belt speeds v/A²",
          ", ".join(f"{float(w):g}" for w in dataset["belt_speed_scale"])),

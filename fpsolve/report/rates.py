@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
+from fpsolve.io.declared import declared
 from fpsolve.report.blocks import (
     Block,
     Facts,
@@ -101,14 +101,15 @@ def _equations(dataset: xr.Dataset) -> list[Block]:
 
 
 def _parameters(dataset: xr.Dataset) -> list[tuple[str, str]]:
-    start = json.loads(dataset.attrs["p0"])
+    about = declared(dataset.attrs)
+    start = dict(about["p0"])
     return [
-        ("potential", f"B = {dataset.attrs['formula']}, belt at rest"),
+        ("potential", f"B = {about['formula']}, belt at rest"),
         ("noises", ", ".join(f"{float(noise):g}" for noise in dataset["noise"])),
         ("parts", ", ".join(map(str, dataset["part"].to_numpy()))),
         ("start", f"{start.pop('kind')}({entries(start)})"),
-        ("tolerances", entries(json.loads(dataset.attrs["settings"]))),
-        ("resolution", "quick" if int(dataset.attrs["quick"]) else "full"),
+        ("tolerances", entries(about["settings"])),
+        ("resolution", "quick" if about["quick"] else "full"),
     ]
 
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
+from fpsolve.io.declared import declared
 from fpsolve.models import LayDownModel
 from fpsolve.report.blocks import (
     Equation,
@@ -44,17 +44,17 @@ class StoredSpectrum:
 def section(dataset: xr.Dataset, source: str) -> Section:
     """Return the section of a page about a spectrum."""
     spectrum = _stored(dataset)
-    model, about = spectrum.model, dataset.attrs
+    model, about = spectrum.model, declared(dataset.attrs)
     items = [
         ("potential", f"B = {model.potential.formula}"),
         ("noise", f"A = {model.noise:g}"),
         ("reference curve", curve_text(model.curve)),
-        ("largest basis", " × ".join(map(str, json.loads(about["truncation"])))),
+        ("largest basis", " × ".join(map(str, about["truncation"]))),
     ]
     if spectrum.essential is not None:
         items.append(("essential spectrum", f"from {spectrum.essential:.12g} to -∞"))
     equations: list[Equation] = model_equations(model)
-    gap = f"{spectrum.gap:.12g} ± {float(about['gap_error']):.1g}"
+    gap = f"{spectrum.gap:.12g} ± {about['gap_error']:.1g}"
     said = (
         f"The spectral gap is {gap}: in the end p/p_S - 1 falls like exp(-λs) with "
         "this λ, its relative entropy with twice that."
@@ -71,13 +71,13 @@ def section(dataset: xr.Dataset, source: str) -> Section:
 
 
 def _stored(dataset: xr.Dataset) -> StoredSpectrum:
-    essential = dataset.attrs.get("essential")
+    about = declared(dataset.attrs)
     return StoredSpectrum(
-        model=LayDownModel.from_dict(json.loads(dataset.attrs["model"])),
+        model=LayDownModel.from_dict(about["model"]),
         eigenvalues=dataset["real"].to_numpy() + 1j * dataset["imag"].to_numpy(),
         sectors=[str(sector) for sector in dataset["sector"].to_numpy()],
-        gap=float(dataset.attrs["gap"]),
-        essential=None if essential is None else float(essential),
+        gap=about["gap"],
+        essential=about.get("essential"),
     )
 
 

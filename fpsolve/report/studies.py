@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from fpsolve.io.declared import declared
 from fpsolve.potentials import Potential, potential_from_dict
 from fpsolve.report.blocks import Block, Notice, Part, Table
 from fpsolve.report.origin import provenance_part
@@ -21,7 +21,7 @@ __all__ = ["cases_blocks", "entries", "origin_of", "potential_of", "versions_par
 def potential_of(dataset: xr.Dataset) -> Potential | None:
     """Return the potential of a study; None if it was a user's own."""
     try:
-        return potential_from_dict(json.loads(dataset.attrs["potential"]))
+        return potential_from_dict(declared(dataset.attrs)["potential"])
     except ValueError:
         return None
 
@@ -59,12 +59,9 @@ def versions_part(dataset: xr.Dataset, seconds: bool = True) -> Part:
 
 def origin_of(dataset: xr.Dataset) -> dict[str, Any]:
     """Return what the attributes of a study say about where it was computed."""
-    kept = ("versions", "environment", "repeat")
-    found = {name: json.loads(dataset.attrs[name]) for name in kept
-             if name in dataset.attrs}  # fmt: skip
-    if "date" in dataset.attrs:
-        found["date"] = dataset.attrs["date"]
-    return found
+    kept = ("versions", "environment", "repeat", "date")
+    about = declared(dataset.attrs)
+    return {name: about[name] for name in kept if name in about}
 
 
 def entries(options: Mapping[str, Any]) -> str:

@@ -10,6 +10,8 @@ import numpy as np
 
 from fpsolve.grids import PhaseSpaceGrid
 from fpsolve.io.attributes import check_complete, made_with, read_model, to_json
+from fpsolve.io.declared import declared
+from fpsolve.io.layout import check_counts
 from fpsolve.io.recipes import RECIPE
 from fpsolve.studies.agreement import MARGINALS, AgreementTest, CrossCheck
 
@@ -115,21 +117,24 @@ def from_xarray(dataset: xr.Dataset) -> CrossCheck:
     counts = [f"{kind}_{which}" for kind in ("probability", "count")
               for which in MARGINALS]  # fmt: skip
     check_complete(dataset, (*numbers, *counts), _NEEDED_ATTRIBUTES)
-    about = dataset.attrs
+    about = declared(dataset.attrs)
+    grid = PhaseSpaceGrid.from_dict(about["grid"])
+    for axis, n in zip(MARGINALS, grid.shape, strict=True):
+        check_counts("grid", n, dataset.sizes[axis], f"`{axis}`")
     return CrossCheck(
-        model=read_model(about, {}) if about["model"] else None,
-        grid=PhaseSpaceGrid.from_dict(json.loads(about["grid"])),
+        model=read_model(about, {}) if "model" in about else None,
+        grid=grid,
         s=dataset["s"].to_numpy(),
         tests=tuple(_read_tests(dataset)),
         false_alarm=float(about["false_alarm"]),
-        n_paths=int(about["n_paths"]),
-        solver=json.loads(about["solver"]),
-        sampler=json.loads(about["sampler"]),
+        n_paths=about["n_paths"],
+        solver=about["solver"],
+        sampler=about["sampler"],
         probabilities={
             which: dataset[f"probability_{which}"].to_numpy() for which in MARGINALS
         },
         counts={which: dataset[f"count_{which}"].to_numpy() for which in MARGINALS},
-        recipe={RECIPE: about[RECIPE]} if RECIPE in about else {},
+        recipe={RECIPE: dataset.attrs[RECIPE]} if RECIPE in about else {},
         start=(
             dataset["initial_density"].to_numpy()
             if "initial_density" in dataset
