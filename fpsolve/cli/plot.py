@@ -28,6 +28,12 @@ Movie = Annotated[
     bool, typer.Option("--movie", help="Also make a movie (GIF) of a density.")
 ]
 FramesPerSecond = Annotated[float, typer.Option(help="Frames per second of the movie.")]
+# What has no movie, in words.
+_KINDS = {
+    "paths": "paths",
+    "hydrodynamic": "a solution of the hydrodynamic limit",
+    "energy": "a law of the energy",
+}
 
 
 def plot(
@@ -38,6 +44,7 @@ def plot(
         from fpsolve import plotting
         from fpsolve.io import load
         from fpsolve.io.atomic import check_folder
+        from fpsolve.io.dataset import kind_of
         from fpsolve.plotting.movie import check_movie
         from fpsolve.solution import Solution
 
@@ -46,8 +53,8 @@ def plot(
         result = load(file)
         if movie and not isinstance(result, Solution):
             raise ValueError(
-                f"`--movie` must be given with the result of `fpsolve run`, got paths "
-                f"in `{file}`; leave it out."
+                "`--movie` must be given with the result of `fpsolve run`, got "
+                f"{_KINDS[kind_of(result)]} in `{file}`; leave it out."
             )
         folder = file.parent if out is None else out
         if movie:

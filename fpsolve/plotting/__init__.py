@@ -32,6 +32,7 @@ if TYPE_CHECKING:
         plot_orbits,
     )
     from fpsolve.plotting.ergodicity import plot_ergodic_averages
+    from fpsolve.plotting.hydrodynamic import plot_hydrodynamic
     from fpsolve.plotting.limits import plot_large_noise
     from fpsolve.plotting.rates import (
         plot_asymptotic_variance,
@@ -57,6 +58,7 @@ __all__ = [
     "plot_entropy",
     "plot_ergodic_averages",
     "plot_fibre",
+    "plot_hydrodynamic",
     "plot_inverse_decay_rate",
     "plot_large_noise",
     "plot_marginals",
@@ -81,6 +83,7 @@ _STUDIES = {
     "plot_energy_eigenfunctions": "fpsolve.plotting.energy",
     "plot_energy_law": "fpsolve.plotting.energy",
     "plot_ergodic_averages": "fpsolve.plotting.ergodicity",
+    "plot_hydrodynamic": "fpsolve.plotting.hydrodynamic",
     "plot_inverse_decay_rate": "fpsolve.plotting.rates",
     "plot_large_noise": "fpsolve.plotting.limits",
     "plot_orbits": "fpsolve.plotting.energy",

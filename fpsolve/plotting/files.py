@@ -1,4 +1,4 @@
-"""All figures of a solution, or of paths, as PNG files."""
+"""All figures of a result as PNG files."""
 
 from __future__ import annotations
 
@@ -15,7 +15,6 @@ from fpsolve.plotting.entropy import has_entropy, plot_entropy
 from fpsolve.plotting.marginals import plot_marginals
 from fpsolve.plotting.moments import plot_moments
 from fpsolve.plotting.overview import plot_overview
-from fpsolve.plotting.selection import check_solution
 from fpsolve.plotting.style import RESOLUTION, paper_style
 from fpsolve.plotting.trajectories import plot_fibre, plot_trajectories
 from fpsolve.solution import Solution
@@ -23,17 +22,21 @@ from fpsolve.solution import Solution
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from fpsolve.io.dataset import Result
+
+    Figures = dict[str, Callable[[Any], Figure]]
+
 __all__ = ["possible_figures", "save_figures"]
 
 
 def save_figures(
-    result: Solution | Paths, directory: str | os.PathLike[str], *, prefix: str = ""
+    result: Result, directory: str | os.PathLike[str], *, prefix: str = ""
 ) -> list[Path]:
     """Write every figure that the result allows as a PNG of 200 dots per inch.
 
     Parameters
     ----------
-    result : Solution or Paths
+    result : Solution, Paths, HydrodynamicSolution or EnergySolution
     directory : str or os.PathLike
         Folder to write to; made if it does not exist.
     prefix : str
@@ -46,27 +49,55 @@ def save_figures(
         solution `overview.png`, `marginals.png` and `angle.png` if a density was
         saved, `entropy.png` if there is a relative entropy, and `moments.png`. For
         paths `ensemble.png`, and if their starts were kept one path: `fibre.png`, or
-        `trajectory.png` on a belt at rest.
+        `trajectory.png` on a belt at rest. For solutions of the limits
+        `hydrodynamic.png` and `law.png`, if a density was saved.
+
+    Raises
+    ------
+    TypeError
+        If it is none of these results.
     """
-    if not isinstance(result, Paths):
-        check_solution(result)
+    kind = _kind_of(result)
     directory = made_folder(directory)
     with paper_style():
         return [
             _write(plot(result), directory / f"{prefix}{name}.png")
-            for name, plot in possible_figures(result).items()
+            for name, plot in _FIGURES[kind](result).items()
         ]
 
 
-def possible_figures(result: Solution | Paths) -> dict[str, Callable[[Any], Figure]]:
+def possible_figures(result: Result) -> Figures:
     """Names of the figures that the result allows, with what draws them."""
-    if isinstance(result, Paths):
-        return _figures_of_paths(result)
-    return _figures_of_solution(result)
+    return _FIGURES[_kind_of(result)](result)
 
 
-def _figures_of_paths(paths: Paths) -> dict[str, Callable[[Any], Figure]]:
-    figures: dict[str, Callable[[Any], Figure]] = {"ensemble": plot_ensemble}
+def _kind_of(result: Any) -> str:
+    from fpsolve.io.dataset import kind_of
+
+    try:
+        return kind_of(result)
+    except TypeError:
+        raise TypeError(
+            "`result` must be a solution or paths to be drawn, got "
+            f"{type(result).__name__}; figures of a study are drawn by the functions "
+            "of fpsolve.plotting."
+        ) from None
+
+
+def _figures_of_hydrodynamic(solution: Any) -> Figures:
+    from fpsolve.plotting.hydrodynamic import plot_hydrodynamic
+
+    return {"hydrodynamic": plot_hydrodynamic} if len(solution.saved_s) else {}
+
+
+def _figures_of_energy(solution: Any) -> Figures:
+    from fpsolve.plotting.energy import plot_energy_law
+
+    return {"law": plot_energy_law} if len(solution.saved_s) else {}
+
+
+def _figures_of_paths(paths: Paths) -> Figures:
+    figures: Figures = {"ensemble": plot_ensemble}
     # Without its model or its start no path can be run again.
     if paths.model is None or not (paths.kept or paths.initial is not None):
         return figures
@@ -75,8 +106,8 @@ def _figures_of_paths(paths: Paths) -> dict[str, Callable[[Any], Figure]]:
     return {**figures, "fibre": plot_fibre}
 
 
-def _figures_of_solution(solution: Solution) -> dict[str, Callable[[Any], Figure]]:
-    figures: dict[str, Callable[[Any], Figure]] = {}
+def _figures_of_solution(solution: Solution) -> Figures:
+    figures: Figures = {}
     if len(solution.saved_s):
         figures["overview"] = plot_overview
         figures["marginals"] = plot_marginals
@@ -86,6 +117,14 @@ def _figures_of_solution(solution: Solution) -> dict[str, Callable[[Any], Figure
     if len(solution.series["s"]):
         figures["moments"] = plot_moments
     return figures
+
+
+_FIGURES: dict[str, Callable[[Any], Figures]] = {
+    "solution": _figures_of_solution,
+    "paths": _figures_of_paths,
+    "hydrodynamic": _figures_of_hydrodynamic,
+    "energy": _figures_of_energy,
+}
 
 
 def _write(figure: Figure, path: Path) -> Path:

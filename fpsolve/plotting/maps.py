@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from matplotlib.colors import Normalize
     from matplotlib.figure import FigureBase
 
+    from fpsolve.reduced.hydrodynamic import HydrodynamicSolution
+
 __all__ = [
     "SHARES",
     "add_colour_bar",
@@ -90,7 +92,7 @@ def enclosing_levels(density: NDArray[np.float64]) -> list[float]:
 
 
 def visible_region(
-    solution: Solution, maps: list[NDArray[np.float64]]
+    solution: Solution | HydrodynamicSolution, maps: list[NDArray[np.float64]]
 ) -> tuple[float, float]:
     """Return half widths of a window with all but 0.1 % of the mass of every map."""
     grid = solution.grid
@@ -113,8 +115,9 @@ def show_region(axes: Axes, region: tuple[float, float]) -> None:
     axes.set_ylim(-region[1], region[1])
 
 
-def add_colour_bar(figure: FigureBase, image: Any, panels: list[Axes]) -> None:
-    """Add the colour bar that several maps share."""
+def add_colour_bar(figure: FigureBase, image: Any, panels: list[Axes]) -> Any:
+    """Add the colour bar that several maps share, and return it."""
     bar = figure.colorbar(image, ax=panels, fraction=0.05, aspect=25, pad=0.02)
     bar.set_label(r"$\int p\;\mathrm{d}\alpha$")
     bar.outline.set_linewidth(0.6)
+    return bar

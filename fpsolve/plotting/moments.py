@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from fpsolve.reduced.hydrodynamic import HydrodynamicSolution
+
 __all__ = ["draw_moments", "plot_moments"]
 
 
@@ -74,7 +76,9 @@ def plot_moments(solution: Solution) -> Figure:
     return figure
 
 
-def draw_moments(axes: Axes, solution: Solution, panel: str) -> None:
+def draw_moments(
+    axes: Axes, solution: Solution | HydrodynamicSolution, panel: str
+) -> None:
     """Draw the moments of "position", "spread" or "direction" into one panel."""
     s = solution.series["s"]
     for curve in PANELS[panel]:
@@ -92,7 +96,7 @@ def draw_moments(axes: Axes, solution: Solution, panel: str) -> None:
                 alpha=0.25,
                 linewidth=0,
             )
-    if panel == "direction":
+    if panel == "direction" and isinstance(solution, Solution):
         _draw_limit(axes, solution)
     axes.set_xlim(s[0], s[-1] if s[-1] > s[0] else s[0] + 1)
     axes.set_xlabel(r"arclength $s$")

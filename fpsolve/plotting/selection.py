@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -12,10 +12,14 @@ from fpsolve.paths import Paths
 from fpsolve.schedule import checked_stops
 from fpsolve.solution import Solution
 
+if TYPE_CHECKING:
+    from fpsolve.reduced.hydrodynamic import HydrodynamicSolution
+
 __all__ = [
     "check_dataset",
     "check_datasets",
     "check_energy_solution",
+    "check_hydrodynamic_solution",
     "check_paths",
     "check_process",
     "check_solution",
@@ -25,7 +29,7 @@ __all__ = [
 
 
 def select_s(
-    solution: Solution, at: Iterable[float] | None, at_most: int
+    solution: Solution | HydrodynamicSolution, at: Iterable[float] | None, at_most: int
 ) -> list[float]:
     """Return the arclengths to show: those asked for, or saved ones evenly thinned."""
     if at is not None:
@@ -86,6 +90,15 @@ def check_energy_solution(solution: Any) -> None:
     from fpsolve.reduced.energy import EnergySolution
 
     check_kind("solution", solution, EnergySolution, "see EnergyProcess.solve")
+
+
+def check_hydrodynamic_solution(solution: Any) -> None:
+    """Raise TypeError unless it is a solution of the hydrodynamic limit."""
+    from fpsolve.reduced.hydrodynamic import HydrodynamicSolution
+
+    check_kind(
+        "solution", solution, HydrodynamicSolution, "see HydrodynamicLimit.solve"
+    )
 
 
 def check_spectrum(found: Any) -> None:

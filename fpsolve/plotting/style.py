@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from fpsolve.models import LayDownModel
+
 __all__ = [
     "COLOURS",
     "COLUMN",
@@ -25,6 +27,7 @@ __all__ = [
     "new_figure",
     "paper_style",
     "parameters",
+    "parameters_of",
 ]
 
 # Widths in inches of one column and of a page of a journal.
@@ -103,7 +106,11 @@ def parameters(solution: Solution) -> str:
 
     A curve with a long formula comes on a line of its own.
     """
-    model = solution.model
+    return parameters_of(solution.model)
+
+
+def parameters_of(model: LayDownModel | None) -> str:
+    """Return the same of a model; None if it could not be read back."""
     if model is None:
         return r"$B$ from the user's own functions"
     potential = _formula(model.potential.latex, model.potential.formula)

@@ -9,11 +9,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from fpsolve.errors import FileFormatError
 from fpsolve.io.attributes import check_complete
-from fpsolve.io.dataset import from_xarray
+from fpsolve.io.dataset import from_xarray, kind_of
+from fpsolve.io.declared import declared
 from fpsolve.io.files import read_dataset, reported_damage
-from fpsolve.paths import Paths
 from fpsolve.report.blocks import Section
-from fpsolve.solution import Solution
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -60,6 +59,13 @@ _STUDIES = {
         ("model", "gap", "gap_error", "truncation", "versions"),
     ),
 }  # fmt: skip
+# Who writes about what `load` returns.
+_RESULTS = {
+    "solution": ("solution", "section"),
+    "paths": ("paths", "section"),
+    "hydrodynamic": ("limit_solutions", "hydrodynamic_section"),
+    "energy": ("limit_solutions", "energy_section"),
+}
 _CROSS_CHECK = "Density against paths"
 
 
@@ -75,11 +81,18 @@ def section_of(result: Any) -> Section:
     """
     if isinstance(result, (str, os.PathLike)):
         return _section_of_file(existing_file(result))
-    if isinstance(result, Solution):
-        return _written("solution", "section", result, "")
-    if isinstance(result, Paths):
-        return _written("paths", "section", result, "")
+    kind = _kind_of(result)
+    if kind is not None:
+        return _written(*_RESULTS[kind], result, "")
     return _section_of_study(result)
+
+
+def _kind_of(result: Any) -> str | None:
+    """Return the key of `_RESULTS`; None for a study."""
+    try:
+        return kind_of(result)
+    except TypeError:
+        return None
 
 
 def existing_file(path: str | os.PathLike[str]) -> Path:
@@ -102,8 +115,7 @@ def _section_of_file(path: Path) -> Section:
         if "fpsolve_format" not in dataset.attrs:
             return _section_of_dataset(dataset, path.name)
         result = from_xarray(dataset)
-        kind = "paths" if isinstance(result, Paths) else "solution"
-        return _written(kind, "section", result, path.name)
+        return _written(*_RESULTS[kind_of(result)], result, path.name)
 
 
 def _section_of_study(result: Any) -> Section:
@@ -131,7 +143,7 @@ def _section_of_study(result: Any) -> Section:
 
 
 def _section_of_dataset(dataset: xr.Dataset, source: str) -> Section:
-    title = str(dataset.attrs.get("title", ""))
+    title = declared(dataset.attrs).get("title", "")
     if title == _CROSS_CHECK:
         from fpsolve.report.studies import origin_of
         from fpsolve.studies.dataset import from_xarray as read_check

@@ -213,8 +213,8 @@ def _arclengths(
     n_units = round(s_end / unit)
     if not abs(n_units * unit - s_end) <= 1e-9 * s_end or n_units < 4:
         raise ValueError(
-            f"`ds` must divide `s_end` = {s_end:g} into at least 4 steps, got {ds:g}; "
-            f"try {s_end / max(math.ceil(s_end / unit), 4):g}."
+            f"`ds` must divide `s_end` = {s_end:g} into at least 4 steps, got "
+            f"{unit:g}; try {s_end / max(math.ceil(s_end / unit), 4):g}."
         )
     chosen = np.geomspace(max(1, n_units // 200), n_units, n_saved)
     multiples = np.unique(np.append(np.round(chosen), np.ceil(SETTLED * n_units)))
