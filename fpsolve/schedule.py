@@ -166,7 +166,8 @@ def check_number_of_steps(
 def _step_of(s: float, start: float, ds: float, n_steps: int) -> int:
     if not math.isfinite(s):
         raise ValueError(f"`save_at` must hold finite numbers, got {s:g}.")
-    step = round((s - start) / ds)
+    # Far outside of the span the quotient may be infinite.
+    step = round(min(max((s - start) / ds, -1.0), n_steps + 1.0))
     if not 0 <= step <= n_steps:
         first, last, got = told_apart(start, start + n_steps * ds, s)
         raise ValueError(

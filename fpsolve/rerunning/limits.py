@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from fpsolve.rerunning.costs import check_run
 from fpsolve.rerunning.missing import own_code, unrecorded
 
 if TYPE_CHECKING:
@@ -28,6 +29,7 @@ def repeat_hydrodynamic(
     start = given.pop("P0", solution.initial_density)
     if run is None or start is None:
         raise unrecorded("how the run began", "`HydrodynamicLimit.solve`")
+    check_run(solution, run, overrides)
     return limit.solve(start, **{"grid": solution.grid, **run, **given})
 
 
@@ -39,6 +41,7 @@ def repeat_energy(
     start = given.pop("start", solution.initial_masses)
     if run is None or start is None:
         raise unrecorded("how the run began", "`EnergyProcess.solve`")
+    check_run(solution, run, overrides)
     found: EnergySolution = solution.process.solve(
         start, **{"grid": solution.grid, **run, **given}
     )

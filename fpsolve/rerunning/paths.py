@@ -7,6 +7,7 @@ from typing import Any
 
 from fpsolve.paths import Paths, sample_paths
 from fpsolve.paths.ensemble import GivenStart
+from fpsolve.rerunning.costs import check_paths
 from fpsolve.rerunning.missing import own_code
 
 __all__ = ["repeat_paths"]
@@ -20,6 +21,7 @@ def repeat_paths(paths: Paths, overrides: dict[str, Any]) -> Paths:
     model = given.pop("model", paths.ensemble.model)
     if model is None:
         raise own_code("model", paths.provenance.get("model_description", ""))
+    check_paths(paths, overrides)
     new = sample_paths(model, **{**_arguments(paths, "initial" in given), **given})
     if given.keys() - {"progress", "client"}:
         return new

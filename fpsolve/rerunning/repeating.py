@@ -59,8 +59,8 @@ or xarray.Dataset
     FileNotFoundError, FileFormatError
         If the file does not exist or is damaged.
     NotRepeatableError
-        If it does not say how it was made, or was made with a user's own code that is
-        not given.
+        If it does not say how it was made, was made with a user's own code that is
+        not given, or asks for more steps, paths or cases than it holds.
     """
     if isinstance(result, (str, os.PathLike)):
         dataset = read_dataset(result)

@@ -7,6 +7,7 @@ from typing import Any
 
 from fpsolve.errors import NotRepeatableError
 from fpsolve.io.schemes import scheme_from_dict
+from fpsolve.rerunning.costs import check_run
 from fpsolve.rerunning.missing import own_code, unrecorded
 from fpsolve.solution import Solution
 from fpsolve.solve import Scheme, solve
@@ -27,6 +28,7 @@ def repeat_solution(solution: Solution, overrides: dict[str, Any]) -> Solution:
     if run is None or p0 is None:
         new = _from_configuration(solution, {**parts, **given})
     else:
+        check_run(solution, run, overrides)
         arguments = {**run, "reference": solution.reference, **given}
         new = solve(_scheme(solution, parts), p0, **arguments)
     if overrides.keys() - {"progress", "model"}:

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
+from fpsolve._checks import shown
 from fpsolve.errors import NotRepeatableError
 from fpsolve.io.recipes import RECIPE, UserCodeError, read_recipe, recipe
+from fpsolve.rerunning.costs import check_study
 from fpsolve.rerunning.missing import own_code, unrecorded
 
 if TYPE_CHECKING:
@@ -53,9 +56,26 @@ def _repeated(dataset: xr.Dataset, overrides: dict[str, Any]) -> Any:
         name, arguments = read_recipe(dataset.attrs[RECIPE], overrides)
     except UserCodeError as error:
         raise own_code(error.argument, error.description) from None
+    function = _function(name)
+    _check_names(function, arguments, overrides)
+    check_study(name, arguments, dataset, overrides)
     if name == "cross_check":
         arguments = _with_start(dataset, arguments)
-    return _function(name)(**arguments)
+    return function(**arguments)
+
+
+def _check_names(
+    function: Callable[..., Any], arguments: dict[str, Any], given: dict[str, Any]
+) -> None:
+    """Raise NotRepeatableError if the recipe names what the function does not have."""
+    known = inspect.signature(function).parameters
+    kinds = {one.kind for one in known.values()}
+    unknown = arguments.keys() - known.keys() - given.keys()
+    if unknown and inspect.Parameter.VAR_KEYWORD not in kinds:
+        raise NotRepeatableError(
+            f"the result must be made with the arguments {', '.join(known)} to be "
+            f"repeated, got {shown(sorted(unknown)[0])}; update fpsolve."
+        )
 
 
 def _function(name: str) -> Callable[..., Any]:
