@@ -126,6 +126,14 @@ def test_studies_without_a_report_say_so_and_are_compared_and_repeated(tmp_path)
     assert fp.compare(path, fp.rerun(path)).equal
 
 
+def test_averages_are_not_saved_more_often_than_memory_allows():
+    with pytest.raises(ValueError, match="`n_saved` must be at most 100000, got 10"):
+        studies.ergodic_averages(
+            fp.QuadraticPotential(), [1.0], s_end=2.0, n_paths=40, seed=1,
+            n_saved=10**12,
+        )  # fmt: skip
+
+
 def test_averages_over_too_few_steps_name_the_step_that_was_chosen():
     with pytest.raises(ValueError, match=r"into at least 4 steps, got 0\.5; try 0\.25"):
         studies.ergodic_averages(

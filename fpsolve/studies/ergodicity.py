@@ -40,6 +40,8 @@ Array = NDArray[np.float64]
 N_BATCHES = 40
 # Arclengths to save at are multiples of about this, so that all noises share them.
 _SAVING_STEP = 0.5
+# Every path is averaged at each of them.
+_MOST_SAVED = 100_000
 # The default step: the splitting is of weak order 2, with an error that grows with the
 # angle A √ds by which noise turns the fibre in a step.
 _LONGEST_STEP, _LARGEST_TURN = 0.1, 0.5
@@ -182,7 +184,7 @@ def _check(
             "an equilibrium there is nothing to converge to."
         )
     check_integer("n_paths", n_paths, N_BATCHES)
-    check_integer("n_saved", n_saved, 8)
+    check_integer("n_saved", n_saved, 8, _MOST_SAVED)
 
 
 def _amplitudes(noises: Iterable[float]) -> Array:
