@@ -158,7 +158,9 @@ class Solution:
 
         if self.model is None:
             return 0.0
-        slope = slope_at_origin(self.model.potential)
+        # A box holds four deviations or more.
+        length = min(self.grid.half_widths) / 4
+        slope = slope_at_origin(self.model.potential, length)
         return KINK_ERROR * (slope * max(self.grid.spacing[:2])) ** 2
 
     def _step_error(self) -> float:

@@ -89,18 +89,6 @@ def test_stored_paths_go_on_bitwise_as_if_never_stored(paths, tmp_path, suffix):
     assert same_bits(again.continued(3.0).states, on.continued(3.0).states)
 
 
-def test_older_files_of_paths_that_went_on_are_read_from_their_start(paths):
-    on = paths.continued(2.0)
-    old = on.to_xarray().assign_attrs(first_step=8)
-    old["start_xi"] = old["start_xi"] + 1.0
-    assert same_bits(io.from_xarray(old).start, on.start)
-    old.attrs["initial"] = '{"kind": "custom", "description": "somebody\'s"}'
-    message = "paths that went on from others must be known from their start, got a "
-    lost = pytest.warns(UserWarning, match="law of the start could not be read back")
-    with pytest.raises(ValueError, match=message), lost:
-        io.from_xarray(old)
-
-
 @pytest.mark.parametrize("keep", [True, False])
 def test_a_stored_path_is_replayed_bitwise(tmp_path, keep):
     paths = sampled(keep=keep)

@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 from fpsolve import diagnostics
 from fpsolve.errors import FpsolveError
 from fpsolve.grids import PhaseSpaceGrid
-from fpsolve.io.schemes import describe_scheme, scheme_from_dict
+from fpsolve.io.schemes import scheme_from_dict
+from fpsolve.run_description import describe_scheme
 from fpsolve.solution import Solution
 from fpsolve.solve import Scheme, solve
 from fpsolve.studies.cell_probabilities import cell_probabilities
