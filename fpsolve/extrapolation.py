@@ -45,7 +45,8 @@ def extrapolated(coarse: Solution, fine: Solution, order: int) -> Solution:
     estimate belongs to the finer run and bounds the error of the extrapolated values
     as long as the runs are in the asymptotic range and interpolation errors do not
     dominate. Where the difference of a scalar changes its sign it says nothing: the
-    estimate is the largest within a sixth of the half width of the box. Out of the
+    estimate is the largest within a sixth of the half width of the box, but at the
+    start, which both runs share. Out of the
     asymptotic range (A² ds > 5, or a nozzle that turns by more than 3 rad in ds) it is
     the whole difference, which covers from order one on, and a warning says so.
 
@@ -63,6 +64,8 @@ def extrapolated(coarse: Solution, fine: Solution, order: int) -> Solution:
     for name, values in fine.series.items():
         change = values - coarse.series[name]
         errors[name] = allowed * largest_nearby(fine.s, np.abs(change), reach)
+        # Both runs begin with the same density.
+        errors[name][0] = allowed * abs(change[0])
         if name not in NOT_EXTRAPOLATED:
             series[name] = values + gain * change
     distances = [
