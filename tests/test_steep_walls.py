@@ -199,14 +199,14 @@ def test_a_wall_is_the_same_in_every_unit_of_length(scale):
 
 
 def test_paths_reflected_by_long_steps_are_told_of():
-    # E|ξ|² at equilibrium, Γ(4/n) n^{2/n}/Γ(2/n), is 0.5637: off by 3.5 %.
+    # E|ξ|² at equilibrium, Γ(4/n) n^{2/n}/Γ(2/n), is 0.5637: off by 3 %.
     model = fp.LayDownModel(WALL, 1.0)
     options = {
         "seed": 1,
         "initial": fp.paths.EquilibriumLaw(fp.QuadraticPotential(0.4, 0.4)),
     }
-    with pytest.warns(UserWarning, match=r"`ds` = 0\.0625 is long for this force: \|∇B\| ds exceeds 2\.5 where [\d.]+ % of the paths end"):  # fmt: skip  # noqa: E501
-        fp.sample_paths(model, 4000, 4.0, 1 / 16, **options)
+    with pytest.warns(UserWarning, match=r"`ds` = 0\.125 is long for this force: \|∇B\| ds exceeds 2\.5 where [\d.]+ % of the paths end"):  # fmt: skip  # noqa: E501
+        fp.sample_paths(model, 4000, 4.0, 1 / 8, **options)
     mean, error = second_moment_of(
         fp.sample_paths(model, 4000, 8.0, 1 / 128, **options)
     )

@@ -33,7 +33,7 @@ METHODS = {
 NO_TRACE = np.zeros((0, kernels.N_STATE, 0))
 # Beyond this |∇B| ds a path is reflected by a step instead of being turned by a force:
 # where many are, no method is of its order any more. For B = ‖ξ‖⁶⁰/60 the splitting is
-# off by 3.5 % in E‖ξ‖² where 3 % are, and by 0.6 % where 0.2 % are.
+# off by 3 % in E‖ξ‖² where 4 % are, and by 1 % where 1 % are.
 LARGEST_TURN = 2.5
 # Normal numbers that one call of the generator gives.
 N_NORMALS = 4

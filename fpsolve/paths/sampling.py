@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import sys
 import warnings
 from collections import deque
@@ -208,8 +209,11 @@ def completed(
 
 def warn_of_long_steps(ensemble: Ensemble, batches: list[Batch]) -> None:
     """Warn if the step does not resolve the force where more than a few paths end."""
-    share = sum(batch.n_fast for batch in batches) / ensemble.n_paths
-    if share > LARGEST_SHARE:
+    n_fast = sum(batch.n_fast for batch in batches)
+    allowed = LARGEST_SHARE * ensemble.n_paths
+    # Three standard deviations: a few paths are no share of all.
+    if n_fast > allowed + 3.0 * math.sqrt(allowed):
+        share = n_fast / ensemble.n_paths
         warnings.warn(
             f"`ds` = {ensemble.schedule.ds:g} is long for this force: |∇B| ds exceeds "
             f"{LARGEST_TURN:g} where {100 * share:.2g} % of the paths end, and "
