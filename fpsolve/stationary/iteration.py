@@ -28,6 +28,8 @@ ITERATION_SHARE = 0.03
 FIRST, SLOWEST = 0.3, 0.9
 # No two densities are further apart.
 DIVERGED = 2.0
+# Corrections within which they must become half as large.
+PATIENCE = 8
 # Halvings of the step on one grid. One that gains less than this is the last: what
 # is left is not the step's.
 HALVINGS, GAIN = 4, 0.5
@@ -120,6 +122,7 @@ def stationary(
     images = strides(p)
     correct = Correction(strides.longest, p, images[0])
     accelerate, before = Acceleration(), np.inf
+    sizes = [np.inf] * PATIENCE
     for _ in range(MOST_CORRECTIONS):
         defect = strides.answer(images) - p
         if not size_of(defect, scheme) < np.inf:
@@ -136,7 +139,8 @@ def stationary(
             one = correct(strides.splitting(images), STEP_ERROR)
             left, applied = share * correction, strides.n_applications
             return Stationary(p, step, left, one, rate, ds, applied)
-        if not size <= DIVERGED:
+        sizes.append(size)
+        if not size <= DIVERGED or sizes[-1] > 0.5 * sizes[-PATIENCE:][0]:
             break
         before = size
     raise SteadyStateError(rate, min(residual, ITERATION_SHARE * goal))
