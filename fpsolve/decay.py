@@ -114,10 +114,15 @@ def fit_decay(
     start, stop = (0.0, 0.0) if window is None else checked_window(window)
     chosen = usable & (s >= start) & (s <= stop)
     if np.count_nonzero(chosen) < FEWEST:
+        remedy = "record more steps, or fit earlier"
+        if level > 0.0:
+            remedy += (
+                f"; the series levels off at {level:.2g}, which `balanced=True` or a "
+                "finer grid lowers"
+            )
         raise ValueError(
             f"`window` must hold at least {FEWEST} values above {NOISE_LEVEL:g}, got "
-            f"{np.count_nonzero(chosen)} in [{start:g}, {stop:g}]; record more "
-            "steps, or fit earlier."
+            f"{np.count_nonzero(chosen)} in [{start:g}, {stop:g}]; {remedy}."
         )
     places, logarithms = s[chosen], np.log(values[chosen])
     # scipy.stats.linregress gives the same, and takes half a second to import.

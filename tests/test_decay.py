@@ -130,6 +130,11 @@ def test_a_window_with_too_few_values_is_refused():
         fit_decay(S, np.exp(-S), (1.0, 1.25))
 
 
+def test_a_series_that_is_level_almost_from_the_start_is_refused():
+    with pytest.raises(ValueError, match=r"the series levels off at 0\.05, which `bal"):
+        fit_decay(S, np.exp(-9.0 * S) + 0.05)
+
+
 @pytest.mark.parametrize("noise", [0.8, 1.5])
 def test_the_entropy_of_the_exact_circulation_decays_at_its_rate(noise):
     # h − 1 = q e^{−Ds} G, so H ≈ ½ ∫ p_S (h − 1)² ∝ e^{−2Ds} = e^{−A²s} once it is

@@ -31,6 +31,9 @@ SCHEMES: dict[str, dict[str, Any]] = {
     "plain": {}, "positive": {"positive": True}, "balanced": {"balanced": True},
 }  # fmt: skip
 NOISES = (0.3, 0.5, 0.8, 1.0, 1.5, 2.5, 5.0)
+# Below, the exact rate of an anisotropic B needs a basis of minutes; above, H of |ξ|
+# takes hundreds of s to fall.
+WITHIN = {"anisotropic": (0.8, 5.0), "|ξ|": (0.3, 2.5)}
 # Cells and steps as for an L1 error of a tenth; until H has fallen by e⁻¹².
 TOLERANCE, E_FOLDS = 0.1, 12.0
 # An exact rate that takes more memory than this is left out.
@@ -90,7 +93,7 @@ def coverage(report: Report, rows: list[dict[str, Any]]) -> None:
         by_scheme[row["scheme"]].append(row)
     for scheme, own in by_scheme.items():
         off = np.array([abs(row["deviation / error"]) for row in own])
-        for errors, least in ((1, 0.68), (2, 0.95)):
+        for errors, least in ((1, 0.68), (2, 0.9)):
             report.check(
                 f"{scheme}: share of {off.size} runs within {errors} error(s)",
                 float(np.mean(off <= errors)), ">", least,
@@ -110,9 +113,12 @@ def main() -> None:
     names = ["|ξ|²/2"] if quick else list(POTENTIALS)
     noises = (0.5, 1.0, 1.5, 3.0) if quick else NOISES
     schemes = ["plain", "balanced"] if quick else list(SCHEMES)
-    rows = [
-        row for name in names for noise in noises for row in runs(name, noise, schemes)
-    ]
+    rows = []
+    for name in names:
+        least, largest = WITHIN.get(name, (0.0, np.inf))
+        for noise in noises:
+            if least <= noise <= largest:
+                rows += runs(name, noise, schemes)
     report.table(rows)
     coverage(report, rows)
     report.finish()

@@ -130,6 +130,7 @@ def _rate(solution: Solution) -> str | None:
     return (
         f"H - H_box falls like exp(-λs), λ = {fit}, "
         f"fitted for s from {start:g} to {end:g}"
+        + (f"; {fit.advice.rstrip('.')}" if fit.advice else "")
     )
 
 
