@@ -108,9 +108,7 @@ def test_a_study_is_not_drawn_by_itself(fpsolve, tmp_path):
     found = fpsolve("plot", str(path), "--out", "figures")
     assert found.exit_code == 2
     assert "it holds a study, 'energy process of fibre lay-down'" in found.stderr
-    with pytest.raises(
-        TypeError, match="figures of a study are drawn by the functions"
-    ):
+    with pytest.raises(TypeError, match="figures of a study are drawn by the"):
         plotting.save_figures(result_files.energy(), tmp_path)
 
 
