@@ -443,7 +443,8 @@ def test_a_scheme_of_user_code_goes_on_by_solve_only(tmp_path):
 def test_other_versions_are_a_warning(tmp_path, monkeypatch):
     old = {**versions(), "numpy": "2.0.0"}
     with monkeypatch.context() as patch:
-        patch.setattr("fpsolve.checkpoints.folder.versions", lambda: old)
+        for module in ("folder", "manifest"):
+            patch.setattr(f"fpsolve.checkpoints.{module}.versions", lambda: old)
         folder = left_at(5, tmp_path / "run")
     with pytest.warns(UserWarning, match=r"begun with numpy 2\.0\.0, now .*last bits"):
         run(folder)

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from fpsolve._checks import shown
 from fpsolve.io.atomic import atomic_path, made_folder
 from fpsolve.paths import Paths
 from fpsolve.plotting.angle import plot_angle
@@ -78,9 +79,9 @@ def _kind_of(result: Any) -> str:
         return kind_of(result)
     except TypeError:
         raise TypeError(
-            "`result` must be a solution or paths to be drawn, got "
-            f"{type(result).__name__}; figures of a study are drawn by the functions "
-            "of fpsolve.plotting."
+            "`result` must be a Solution, Paths, a HydrodynamicSolution or an "
+            f"EnergySolution, got {shown(result)}; figures of a study are drawn by the "
+            "functions of fpsolve.plotting."
         ) from None
 
 
