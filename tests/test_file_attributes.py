@@ -214,6 +214,22 @@ def test_arrays_that_do_not_fit_their_attributes_are_refused(tmp_path):
             fp.load(path)
 
 
+@pytest.mark.parametrize("how", ["gone", "text", "error"])
+def test_damaged_variables_are_refused_by_compare_as_by_load(how, tmp_path):
+    changes = {
+        "gone": lambda one: one.drop_vars("density"),
+        "text": lambda one: one.assign(mass=one["mass"].astype(str)),
+        "error": lambda one: one.assign(mass_error=one["mass"].astype(str)),
+    }
+    path = table.write_solution(tmp_path / "a.nc")
+    table.tampered(changes[how], path)
+    for read in (fp.load, lambda path: fp.compare(path, path)):
+        with pytest.raises(
+            FileFormatError, match=r"is missing in it|must hold numbers"
+        ):
+            read(path)
+
+
 # Recipes of absurd size.
 
 

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import os
+import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from fpsolve.io.dataset import FORMAT, to_xarray
+from fpsolve.io.dataset import FORMAT, from_xarray, to_xarray
 from fpsolve.io.declared import declared
-from fpsolve.io.files import read_dataset
+from fpsolve.io.files import read_dataset, reported_damage
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -63,12 +64,23 @@ def dataset_of(result: Any, argument: str) -> xr.Dataset:
     import xarray as xr
 
     if isinstance(result, (str, os.PathLike)):
-        result = read_dataset(result)
+        path, result = result, read_dataset(result)
+        _check_layout(path, result)
     elif not isinstance(result, xr.Dataset):
         result = _made_dataset(result)
     kind_of_dataset(result, argument)
     found: xr.Dataset = result
     return found
+
+
+def _check_layout(path: str | os.PathLike[str], dataset: xr.Dataset) -> None:
+    """Raise FileFormatError unless `load` would read the file."""
+    # Without the code of a user's potential a law of the energy cannot be loaded.
+    if dataset.attrs.get("fpsolve_kind") not in ("solution", "paths", "hydrodynamic"):
+        return
+    with reported_damage(path, Exception), warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)
+        from_xarray(dataset)
 
 
 def kind_of_dataset(dataset: xr.Dataset, argument: str) -> str:
