@@ -118,7 +118,7 @@ def _check_on_grid(
 def _check_errors(dataset: xr.Dataset, over: tuple[str, ...]) -> None:
     for name, variable in dataset.data_vars.items():
         if variable.dims == over[1:] or str(name).endswith("_error"):
-            check_dimensions(dataset, {str(name): variable.dims})
+            check_dimensions(dataset, {str(name): tuple(map(str, variable.dims))})
         if str(name).endswith("_error") and variable.dims not in {(n,) for n in over}:
             raise ValueError(
                 f"`{name}` must be a series over {' or '.join(over)}, got one over "
