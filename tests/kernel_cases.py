@@ -149,6 +149,10 @@ class Arguments:
                 self.rotate_kernel(False), self.rotate_kernel(True),
                 self.rotate_kernel(False, n_nodes=2),
             ],
+            "first_of_group": [
+                (np.array(ordered), 1e-13, 1e-20, np.zeros(len(ordered), np.bool_))
+                for ordered in ([0.0, 1e-21, 1.0, 1 + 5e-14, 1 + 2e-13, 3.0], [7.0])
+            ],
             "rotation_matrices": [
                 (line[0, :4], heat, False, np.zeros((4, n // 2, n // 2))),
                 (line[0, :4], heat, True, np.zeros((4, n // 2, n // 2))),

@@ -39,7 +39,7 @@ def two_wells_derivative(r):
         ),
         (
             IsotropicPotential(
-                lambda r: 1.5 * np.log1p(r**2), lambda r: 3 * r / (1 + r**2)
+                lambda r: 0.9 * np.log1p(r**2), lambda r: 1.8 * r / (1 + r**2)
             ),
             r"`potential` must be normalisable for an energy .*, got .*; choose one",
         ),

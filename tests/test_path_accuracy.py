@@ -51,6 +51,11 @@ WEAK = [
 ]
 
 
+# Orders and survival are looked at where steps are long, which is told.
+LONG_STEPS = pytest.mark.filterwarnings("ignore:`ds` = .* is long for this force")
+
+
+@LONG_STEPS
 @pytest.mark.parametrize(("method", "order", "name", "first"), WEAK)
 def test_weak_orders_are_observed_at_every_halving(method, order, name, first, limits):
     def bias(n_steps):
@@ -166,6 +171,7 @@ def test_without_noise_the_energy_of_the_orbit_is_kept_to_second_order(name):
     assert convergence.errors[-1] < 1e-4, str(convergence)
 
 
+@LONG_STEPS
 def test_noise_of_any_size_leaves_the_tangent_on_the_circle():
     for noise in (10.0, 1e3, 1e6):
         for method in ("splitting", "euler_maruyama", "heun"):
@@ -182,6 +188,7 @@ def test_noise_of_any_size_leaves_the_tangent_on_the_circle():
             assert np.hypot(*paths.xi[0].T).max() < 16
 
 
+@LONG_STEPS
 def test_a_force_of_any_size_turns_the_tangent_but_breaks_nothing():
     # |∇B| ds = 4e6: the rotation ends where the angle comes to rest.
     model = fp.LayDownModel(fp.PowerPotential(4.0), 1.0)

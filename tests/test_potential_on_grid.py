@@ -33,7 +33,11 @@ USES = {
     "semi_lagrangian": lambda model, grid: fp.semi_lagrangian(model, grid),
     "suggest_step": lambda model, grid: fp.suggest_step(model, grid),
     "steady_state": lambda model, grid: fp.steady_state(
-        model, grid, boundary_tolerance=1.0
+        # On 8 cells its error is a third, which it tells.
+        model,
+        grid,
+        boundary_tolerance=1.0,
+        error_tolerance=2.0,
     ),
     "differences": lambda model, grid: plane_rate(model, fp.PlaneGrid.of(grid)),
 }
@@ -198,7 +202,7 @@ def test_points_may_be_single_numbers():
 
 
 def test_a_force_whose_square_overflows_where_the_density_is_gives_no_step():
-    narrow = fp.LayDownModel(fp.QuadraticPotential(1e-100, 1e-100), 1.0)
+    narrow = fp.LayDownModel(fp.PowerPotential(3.0, 1e-60), 1.0)
     with pytest.raises(ValueError, match=r"`grid` must resolve exp\(-B\), got a mean square of the force beyond all numbers; take more cells"):  # fmt: skip  # noqa: E501
         fp.suggest_step(narrow, EVEN)
     # Where no density is it does not matter.

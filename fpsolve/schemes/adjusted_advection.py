@@ -133,7 +133,8 @@ class AdjustedAdvection:
             return
         spare = self._perturbed_values(state, feet, mass <= target, s, ds)
         other = self.form.mass(spare)
-        theta = (target - other) / (mass - other) if mass != other else math.inf
+        possible = math.isfinite(other) and mass != other
+        theta = (target - other) / (mass - other) if possible else math.inf
         state.theta = theta
         if not 0.0 <= theta <= 1.0:
             raise MassCorrectionError(s, theta, state.n_steps)

@@ -66,10 +66,14 @@ class DensityForm:
     grid : PhaseSpaceGrid
     weight : ndarray, shape (n1, n2), or None
         e^{−B} (up to a factor) for the balanced form; None for p itself.
+    nearest : pair of ndarray of int, shape (n1, n2), or None
+        Where e^{−B} is beyond numbers in some cells: for every cell the nearest in
+        which it is not.
     """
 
     grid: PhaseSpaceGrid
     weight: Array | None
+    nearest: tuple[NDArray[np.intp], NDArray[np.intp]] | None = None
 
     def start(self, p0: Array) -> State:
         """State of a run that begins at the density p0."""
@@ -78,6 +82,10 @@ class DensityForm:
         plane = self.grid.shape[:2]
         weight = np.ones(plane) if self.weight is None else self.weight
         scale_rows(p0, 1.0 / weight, values)
+        if self.nearest is not None:
+            # No mass is there, but its neighbours are interpolated from it: a constant
+            # h must be one there too.
+            values = values[self.nearest]
         if self.weight is not None:
             self._check_contrast(values, self.weight)
         mass = self._sums(p0).sum() * self.grid.cell_volume
@@ -125,5 +133,13 @@ def plain_form(grid: PhaseSpaceGrid) -> DensityForm:
 def balanced_form(model: LayDownModel, grid: PhaseSpaceGrid) -> DensityForm:
     """p = e^{−B} h: the equilibrium is h = const, kept to rounding when v = 0."""
     potential = value_at(model.potential, *grid.plane())
-    depth = np.minimum(potential - potential.min(), DEEPEST)
-    return DensityForm(grid, np.exp(-depth))
+    depth = potential - potential.min()
+    weight, too_deep = np.exp(-np.minimum(depth, DEEPEST)), depth > DEEPEST
+    if not too_deep.any():
+        return DensityForm(grid, weight)
+    from scipy.ndimage import distance_transform_edt
+
+    row, column = distance_transform_edt(
+        too_deep, return_distances=False, return_indices=True
+    )
+    return DensityForm(grid, weight, (row, column))
