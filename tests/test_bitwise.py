@@ -60,6 +60,7 @@ def test_threads_of_blas_and_the_limit_of_numba_change_no_bit(in_this_process):
     assert in_another_process(1, 2) == in_this_process
 
 
+@pytest.mark.nightly
 def test_what_is_compiled_now_gives_the_bits_of_what_numba_kept(
     tmp_path,
 ):
@@ -114,6 +115,7 @@ STUDIES = {
 }  # fmt: skip
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("name", STUDIES)
 def test_a_study_gives_the_same_bits_on_two_threads_and_in_processes(
     name, on_threads, another_process

@@ -18,6 +18,7 @@ def bump(xi1, xi2):
     return np.exp(-((xi1 - 0.8) ** 2) - (xi2 + 0.4) ** 2)
 
 
+@pytest.mark.nightly
 def test_numba_computes_the_same_rate_of_the_full_equation(uneven_grid):
     equation = FokkerPlanckPDE(BELT)
     field = to_pde_field(asymmetric_start(uneven_grid, BELT.potential), uneven_grid)

@@ -17,6 +17,7 @@ from reporting import Report, restricted
 
 import fpsolve as fp
 from fpsolve import suggestions
+from fpsolve.potentials.nodes import gibbs_nodes
 
 
 @dataclass(frozen=True)
@@ -46,9 +47,7 @@ QUICK = CASES[:2]
 
 def start(grid: fp.PhaseSpaceGrid, potential: object) -> np.ndarray:
     """Half as wide as the equilibrium, off centre, pointing across."""
-    xi1, xi2, weight = suggestions.sampled(potential)
-    deviation1 = np.sqrt((weight * xi1**2).sum())
-    deviation2 = np.sqrt((weight * xi2**2).sum())
+    deviation1, deviation2 = gibbs_nodes(potential).deviations()
     return fp.initial.gaussian(
         grid,
         mean=(deviation1, 0.0),
