@@ -19,8 +19,8 @@ __all__ = ["SuggestedGrid", "SuggestedStep", "suggest_grid", "suggest_step"]
 
 Array = NDArray[np.float64]
 
-# Upper bounds of ‖p − p_exact‖₁ ≤ C ds², C = 0.4 (1 + κ) + 0.18 A², over s ≤ 3 and
-# 0.3 ≤ A ≤ 10; measured by validation/error_laws.py.
+# Upper bounds of ‖p − p_exact‖₁ ≤ C ds², C = 0.4 (1/ℓ² + κ) + 0.18 A²/ℓ, over s ≤ 3ℓ
+# and 0.3 ≤ A√ℓ ≤ 10; measured by validation/error_laws.py for patterns of ℓ = 1.
 FORCE_COEFFICIENT = 0.4
 NOISE_COEFFICIENT = 0.18
 # ‖error‖₁ ≤ 0.06 (Δξ/w)⁸ / ds of eight-point interpolation, for a density whose
@@ -38,6 +38,7 @@ LEAST_NOISE = 0.05
 # boundary mass would stop a run at its default tolerance of 1e-3.
 BOX_SHARE = 0.1
 LARGEST_LOSS = 5e-5
+# Sizes of the pattern within which the force has to balance the belt.
 WIDEST = 1e3
 # A deviation this many times the width of one well is that of several.
 WELLS = 1 / 0.6
@@ -90,10 +91,13 @@ class SuggestedGrid(PhaseSpaceGrid):
 def suggest_step(
     model: LayDownModel, grid: PhaseSpaceGrid, tolerance: float = 1e-2
 ) -> SuggestedStep:
-    """Step ds with C ds² ≤ tolerance, C = 0.4 (1 + κ) + 0.18 A², κ = ½ ∫|∇B|² e^{−B}/Z.
+    """Step ds with C ds² ≤ tolerance, C = 0.4 (1/ℓ² + κ) + 0.18 A²/ℓ, κ = ½ E|∇B|².
+
+    ℓ is the size of the pattern, the power of four nearest the deviation of e^{−B}/Z:
+    1 for deviations between 1/2 and 2 (remark 3.1: the law has no unit of its own).
 
     The law bounds the L1 error of one run of either scheme of order 2 (Strang) over a
-    few units of s; with `solve(..., extrapolate=True)` the same step gives a far
+    few ℓ of s; with `solve(..., extrapolate=True)` the same step gives a far
     smaller error and an estimate of it. Large noise is thereby resolved as well
     (ds ≤ 3/A²). The step is 1/m with an integer m, so that it divides whole spans.
 
@@ -114,16 +118,20 @@ def suggest_step(
     check_grid(grid)
     check_tolerance(tolerance)
     mean_force = mean_square_force(model, grid)
-    law = splitting_coefficient(model, mean_force)
+    length = unit_of_length(model.potential)
+    law = splitting_coefficient(model, mean_force, length)
     if not math.isfinite(law):
         raise ValueError(
             "`grid` must resolve exp(-B), got a mean square of the force beyond all "
             "numbers; take more cells, or a smaller `half_width`."
         )
-    wanted = min(math.sqrt(tolerance / law), 3.0 / max(model.noise, 1e-3) ** 2, 1.0)
+    longest = min(1.0, length)
+    finest = 3.0 / max(model.noise * model.noise, 1e-6)
+    wanted = min(math.sqrt(tolerance / law), finest, longest)
     ds = 1.0 / math.ceil(1.0 / wanted)
     cell = max(grid.spacing[:2])
-    reach = INTERPOLATION_COEFFICIENT * (cell / feature_width(model)) ** 8 / ds
+    steps = length / ds
+    reach = INTERPOLATION_COEFFICIENT * (cell / feature_width(model)) ** 8 * steps
     reason = (
         f"the splitting error is at most {law:.2g} ds² (κ = {mean_force / 2:.2g}, "
         f"A = {model.noise:g}), so ds = {ds:.3g} keeps it below {tolerance:g}"
@@ -184,15 +192,17 @@ def suggest_grid(
     lost = min(BOX_SHARE * tolerance, LARGEST_LOSS)
     nodes = gibbs_nodes(model.potential)
     half_widths, held = box_of(model, nodes, lost, initial, s_end)
-    law = splitting_coefficient(model, sum(nodes.mean_square_forces()))
-    ds = min(math.sqrt(tolerance / law), 1.0)
-    width = feature_width_of(nodes, model.noise)
-    cell = width * (0.3 * tolerance * ds / INTERPOLATION_COEFFICIENT) ** (1 / 8)
+    length = unit_of_nodes(nodes)
+    law = splitting_coefficient(model, sum(nodes.mean_square_forces()), length)
+    step = min(math.sqrt(tolerance / law) / length, 1.0)
+    noise = model.noise * math.sqrt(length)
+    width = feature_width_of(nodes, noise)
+    cell = width * (0.3 * tolerance * step / INTERPOLATION_COEFFICIENT) ** (1 / 8)
     kink = slope_at_origin(model.potential, min(nodes.deviations()))
     if kink > 0:
         cell = min(cell, math.sqrt(0.5 * tolerance / KINK_COEFFICIENT) / kink)
     n1, n2 = (even_cells(2 * half / cell) for half in half_widths)
-    n_alpha = angles_for(model.noise)
+    n_alpha = angles_for(noise)
     check_size(n1, n2, n_alpha, half_widths, width)
     reason = (
         f"half widths {half_widths[0]:g} and {half_widths[1]:g} {held}; cells of "
@@ -260,10 +270,23 @@ def check_tolerance(tolerance: float) -> None:
         )
 
 
-def splitting_coefficient(model: LayDownModel, mean_force: float) -> float:
-    """C of the splitting error C ds²."""
-    spread = NOISE_COEFFICIENT * model.noise * model.noise
-    return FORCE_COEFFICIENT * (1 + mean_force / 2) + spread
+def splitting_coefficient(
+    model: LayDownModel, mean_force: float, length: float = 1.0
+) -> float:
+    """C of the splitting error C ds², for a pattern of the given size."""
+    spread = NOISE_COEFFICIENT * model.noise * model.noise / length
+    return FORCE_COEFFICIENT * (1 / length**2 + mean_force / 2) + spread
+
+
+def unit_of_length(potential: Potential) -> float:
+    """ℓ of the error laws: 1 for a potential that has no pattern."""
+    return unit_of_nodes(gibbs_nodes(potential)) if potential.normalisable else 1.0
+
+
+def unit_of_nodes(nodes: GibbsNodes) -> float:
+    """The power of four nearest the smaller deviation, so that scaling is exact."""
+    deviation = min(nodes.deviations())
+    return 4.0 ** round(math.log(deviation, 4.0)) if deviation > 0 else 1.0
 
 
 def mean_square_force(model: LayDownModel, grid: PhaseSpaceGrid) -> float:
@@ -282,11 +305,15 @@ def feature_width(model: LayDownModel) -> float:
     """Half the smaller standard deviation of e^{−B}, less where noise is small."""
     if not model.potential.normalisable:
         return FEATURE * narrowing(model.noise)
-    return feature_width_of(gibbs_nodes(model.potential), model.noise)
+    nodes = gibbs_nodes(model.potential)
+    return feature_width_of(nodes, model.noise * math.sqrt(unit_of_nodes(nodes)))
 
 
 def feature_width_of(nodes: GibbsNodes, noise: float) -> float:
-    """The same; of one well where there are several, of the wall where it is steep."""
+    """The same; of one well where there are several, of the wall where it is steep.
+
+    The noise is A√ℓ, without dimension.
+    """
     widths = [
         deviation if deviation < WELLS / math.sqrt(force) else 1 / math.sqrt(force)
         for deviation, force in zip(
@@ -323,17 +350,19 @@ def belt_shift(model: LayDownModel) -> float:
     def excess(x: float) -> float:
         return float(model.potential.gradient(x, 0.0)[0]) - force
 
+    widest = WIDEST * unit_of_length(model.potential)
     centre = 0.0
     if float(model.potential.gradient(0.0, 0.0)[0]) != 0:
-        centre = lowest_on_belt(model.potential)
-    if not excess(centre) < 0 < excess(WIDEST):
+        centre = lowest_on_belt(model.potential, widest)
+    if not excess(centre) < 0 < excess(widest):
         return 0.0
-    return float(brentq(excess, centre, WIDEST)) - centre
+    xtol = 2e-12 * widest / WIDEST
+    return float(brentq(excess, centre, widest, xtol=xtol)) - centre
 
 
-def lowest_on_belt(potential: Potential) -> float:
+def lowest_on_belt(potential: Potential, widest: float) -> float:
     """About where B is lowest along ξ2 = 0."""
-    places = np.linspace(-WIDEST, WIDEST, 20001)
+    places = np.linspace(-widest, widest, 20001)
     return float(places[np.argmin(potential.value(places, 0.0))])
 
 

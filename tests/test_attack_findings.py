@@ -8,7 +8,7 @@ import pytest
 from solutions import relaxing_solution
 
 import fpsolve as fp
-from fpsolve import diagnostics, initial, plotting, studies
+from fpsolve import diagnostics, initial, plotting, studies, suggestions
 from fpsolve.curves import FixedBelt, MovingBelt, RotatingNozzle
 from fpsolve.studies.rates.bounds import averaging_bound, hypocoercive_bound
 
@@ -148,3 +148,54 @@ def test_estimates_cover_where_a_step_sees_neither_noise_nor_nozzle(noise, curve
     # A sixteenth of the step leaves an eighth of the estimate in `exact`.
     assert error < 1.1 * estimate
     assert error > estimate / 3
+
+
+@pytest.mark.parametrize("sigma", [4.0**-8, 1 / 64, 64.0])
+@pytest.mark.parametrize(
+    ("potential", "noise", "curve"),
+    [
+        (lambda sigma: fp.QuadraticPotential(1.5 * sigma, 1.5 * sigma), 2.0, 0.0),
+        (lambda sigma: fp.LinearPotential(1.323 / sigma), 0.4966, 0.0),
+        (lambda sigma: fp.PowerPotential(2.126, sigma), 0.5945, 0.9),
+    ],
+    ids=["quadratic", "linear", "on a fast belt"],
+)
+def test_the_suggested_grid_has_no_unit_of_length(potential, noise, curve, sigma):
+    """Remark 3.1: ξ ~ σ, A ~ 1/√σ; the noise entered the cells with its unit."""
+
+    def suggested(scale):
+        amplitude = noise / scale**0.5
+        model = fp.LayDownModel(potential(scale), amplitude, MovingBelt(curve))
+        return fp.suggest_grid(model, 0.3, s_end=2 * scale if curve else None)
+
+    plain, scaled = suggested(1.0), suggested(sigma)
+    # Scaling by a power of four is exact.
+    assert scaled.shape == plain.shape
+    assert scaled.half_widths == tuple(sigma * half for half in plain.half_widths)
+
+
+def test_the_law_of_the_suggested_step_has_no_unit_of_length():
+    """C ds² is a number: κ, 1 and A² have three different units."""
+    law, force = suggestions.splitting_coefficient, 0.7
+    for sigma in (1 / 64, 64.0):
+        model = fp.LayDownModel(fp.QuadraticPotential(), 1.5 / sigma**0.5)
+        scaled = law(model, force / sigma**2, sigma) * sigma**2
+        plain = law(fp.LayDownModel(fp.QuadraticPotential(), 1.5), force)
+        # Rounding of a few operations.
+        assert scaled == pytest.approx(plain, rel=1e-14)
+
+
+@pytest.mark.parametrize("sigma", [1 / 64, 1 / 4])
+def test_the_suggested_step_shrinks_with_the_pattern(sigma):
+    """It is 1/m: steps of a pattern σ wide are σ times as long, but for that."""
+    plain = suggested_step(1.0)
+    assert suggested_step(sigma) == pytest.approx(sigma * plain, rel=1 / 10)
+    assert (1 / suggested_step(sigma)) % 1 == pytest.approx(0.0, abs=1e-9)
+
+
+def suggested_step(sigma):
+    """With A√σ = 1 on a grid of the same cells."""
+    model = fp.LayDownModel(fp.QuadraticPotential(sigma, sigma), 1 / sigma**0.5)
+    return float(
+        fp.suggest_step(model, fp.PhaseSpaceGrid(6.0 * sigma, (40, 40, 16)), 1e-2)
+    )

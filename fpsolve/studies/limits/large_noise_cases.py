@@ -16,6 +16,7 @@ from fpsolve.grids import PhaseSpaceGrid
 from fpsolve.models import LayDownModel
 from fpsolve.paths import GaussianLaw
 from fpsolve.potentials import Potential, QuadraticPotential
+from fpsolve.potentials.nodes import gibbs_nodes
 from fpsolve.reduced.hydrodynamic import HydrodynamicLimit
 from fpsolve.schemes import drift_kick
 from fpsolve.solve import solve
@@ -27,7 +28,7 @@ from fpsolve.studies.limits.distances import distances
 from fpsolve.studies.limits.gap_expansion import next_gap_term
 from fpsolve.studies.limits.plane_limit import stationary_limit, transient_limit
 from fpsolve.studies.rates.poincare import poincare_constant
-from fpsolve.suggestions import box_half_widths, feature_width
+from fpsolve.suggestions import box_half_widths, feature_width_of
 
 __all__ = ["PARTS", "Resolution", "deviation_of", "large_noise_case", "resolution_for"]
 
@@ -111,7 +112,7 @@ def deviation_of(potential: Potential) -> float:
     if isinstance(potential, QuadraticPotential):
         return min(potential.sigma1, potential.sigma2)
     # Features are half as wide, with this much noise.
-    return 2 * feature_width(LayDownModel(potential, 1.0))
+    return 2 * feature_width_of(gibbs_nodes(potential), 1.0)
 
 
 def _half_widths(potential: Potential, pull: float) -> tuple[float, float]:

@@ -32,7 +32,7 @@ MODULES = (
     "command_lines",
 )
 # Seconds of CPU time that a case may take, and of waiting without any.
-LIMIT, STANDSTILL = 40.0, 240.0
+LIMIT, STANDSTILL = 120.0, 240.0
 # Bytes of address space beyond what the process has when it begins.
 MEMORY = 8 * 2**30
 
