@@ -344,7 +344,8 @@ def belt_shift(model: LayDownModel) -> float:
     speed = abs(model.belt_speed)
     if speed == 0:
         return 0.0
-    opening = float(brentq(lambda k: i1e(k) / i0e(k) - speed, 0.0, 1e6))
+    # At twice 1/(1 − v) the ratio 1 − 1/(2k) − … is beyond v.
+    opening = float(brentq(lambda k: i1e(k) / i0e(k) - speed, 0.0, 2 / (1 - speed)))
     force = 0.5 * model.noise * model.noise * opening
 
     def excess(x: float) -> float:

@@ -5,11 +5,13 @@ The generator is `validation/reliability/attack.py`.
 
 import numpy as np
 import pytest
+from scipy.special import i0e, i1e
 from solutions import relaxing_solution
 
 import fpsolve as fp
 from fpsolve import diagnostics, initial, plotting, studies, suggestions
 from fpsolve.curves import FixedBelt, MovingBelt, RotatingNozzle
+from fpsolve.stationary.start import concentration_of
 from fpsolve.studies.rates.bounds import averaging_bound, hypocoercive_bound
 
 GRID = fp.PhaseSpaceGrid(5.0, (9, 8, 8))
@@ -199,3 +201,48 @@ def suggested_step(sigma):
     return float(
         fp.suggest_step(model, fp.PhaseSpaceGrid(6.0 * sigma, (40, 40, 16)), 1e-2)
     )
+
+
+POTENTIALS = [
+    fp.QuadraticPotential(),
+    fp.LinearPotential(),
+    fp.PowerPotential(3.0),
+    fp.FreePotential(),
+    fp.IsotropicPotential(lambda r: r**2, lambda r: 2 * r),
+    fp.CallablePotential(lambda x, y: x**2 + y**2, lambda x, y: (2 * x, 2 * y)),
+]
+
+
+@pytest.mark.parametrize("potential", POTENTIALS, ids=lambda one: type(one).__name__)
+@pytest.mark.parametrize("xi1", ["x", 1j, None, max, [True]], ids=repr)
+def test_a_potential_refuses_what_is_no_place(potential, xi1):
+    """They ended in numpy's errors, and complex numbers were accepted."""
+    for question in (potential.value, potential.gradient):
+        with pytest.raises(TypeError, match="`xi1` must hold real numbers"):
+            question(xi1, 0.0)
+        with pytest.raises(TypeError, match="`xi2` must hold real numbers"):
+            question(0.0, xi1)
+
+
+@pytest.mark.parametrize("potential", POTENTIALS, ids=lambda one: type(one).__name__)
+@pytest.mark.parametrize("kind", ["f2", "f4", ">f8", "longdouble", "i1"])
+def test_potentials_answer_in_double_precision(potential, kind):
+    xi1 = np.array([0.0, 1.0, 2.0], dtype=kind)
+    plain = xi1.astype(float)
+    answers = (potential.value(xi1, xi1), *potential.gradient(xi1, 1.0))
+    expected = (potential.value(plain, plain), *potential.gradient(plain, 1.0))
+    for got, exact in zip(answers, expected, strict=True):
+        assert got.dtype == np.float64
+        np.testing.assert_array_equal(got, exact)
+
+
+@pytest.mark.parametrize("speed", [1e-12, 0.3, 0.999, 1 - 1e-12, np.nextafter(1, 0)])
+def test_angles_balance_every_belt(speed):
+    """I₁(k)/I₀(k) = v; k was looked for below 1e6 only, as if v < 1 − 5e-7."""
+    k = concentration_of(speed)
+    # To rounding of both Bessel functions.
+    assert i1e(k) / i0e(k) == pytest.approx(speed, rel=1e-12)
+    model = fp.LayDownModel(fp.QuadraticPotential(), 1e-9, MovingBelt(speed))
+    # |∂₁B| = ξ1 = A²k/2, unless that is beyond the pattern.
+    shift = suggestions.belt_shift(model)
+    assert shift in (pytest.approx(0.5e-18 * k, rel=1e-6, abs=1e-12), 0.0)

@@ -10,6 +10,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from fpsolve._arrays import check_numbers
 from fpsolve.potentials.potential import RadialPotential
 
 __all__ = ["FreePotential"]
@@ -28,11 +29,11 @@ class FreePotential(RadialPotential):
 
     def radial_value(self, r: ArrayLike) -> NDArray[np.float64]:
         """0."""
-        return np.zeros(np.shape(r))
+        return np.zeros(check_numbers("r", r).shape)
 
     def radial_derivative(self, r: ArrayLike) -> NDArray[np.float64]:
         """0."""
-        return np.zeros(np.shape(r))
+        return np.zeros(check_numbers("r", r).shape)
 
     @cached_property
     def partition_function(self) -> float:

@@ -10,6 +10,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from fpsolve._arrays import check_numbers
 from fpsolve.potentials.lengths import check_length
 from fpsolve.potentials.potential import RadialPotential
 
@@ -48,11 +49,11 @@ class LinearPotential(RadialPotential):
 
     def radial_value(self, r: ArrayLike) -> NDArray[np.float64]:
         """K r."""
-        return np.asarray(np.multiply(self.slope, r), dtype=np.float64)
+        return np.asarray(np.multiply(self.slope, check_numbers("r", r)))
 
     def radial_derivative(self, r: ArrayLike) -> NDArray[np.float64]:
         """K."""
-        return np.full(np.shape(r), self.slope)
+        return np.full(check_numbers("r", r).shape, self.slope)
 
     @cached_property
     def partition_function(self) -> float:

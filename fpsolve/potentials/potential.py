@@ -11,6 +11,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from fpsolve._arrays import check_numbers
 from fpsolve.potentials.partition import Normalisation, normalisation_of
 
 __all__ = ["Potential", "RadialPotential"]
@@ -194,12 +195,14 @@ class RadialPotential(Potential):
 
     def value(self, xi1: ArrayLike, xi2: ArrayLike) -> NDArray[np.float64]:
         """B(‖ξ‖), float64, in the broadcast shape of the arguments."""
+        xi1, xi2 = check_numbers("xi1", xi1), check_numbers("xi2", xi2)
         return self.radial_value(np.hypot(xi1, xi2))
 
     def gradient(
         self, xi1: ArrayLike, xi2: ArrayLike
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """B'(r) ξ/r, and 0 at the origin; two arrays in the broadcast shape."""
+        xi1, xi2 = check_numbers("xi1", xi1), check_numbers("xi2", xi2)
         r = np.hypot(xi1, xi2)
         # A profile may be singular at 0, so it is not asked there at all.
         safe_r = np.where(r > 0, r, 1.0)

@@ -10,6 +10,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from fpsolve._arrays import check_numbers
 from fpsolve._checks import check_real
 from fpsolve.potentials.lengths import check_length
 from fpsolve.potentials.potential import RadialPotential
@@ -59,11 +60,12 @@ class PowerPotential(RadialPotential):
 
     def radial_value(self, r: ArrayLike) -> NDArray[np.float64]:
         """(r/c)ⁿ / n."""
+        r = check_numbers("r", r)
         return np.asarray(np.divide(r, self.scale) ** self.exponent / self.exponent)
 
     def radial_derivative(self, r: ArrayLike) -> NDArray[np.float64]:
         """(r/c)ⁿ⁻¹ / c."""
-        scaled = np.divide(r, self.scale)
+        scaled = np.divide(check_numbers("r", r), self.scale)
         return np.asarray(scaled ** (self.exponent - 1) / self.scale)
 
     @cached_property

@@ -10,6 +10,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from fpsolve._arrays import check_numbers
 from fpsolve.potentials.lengths import check_length
 from fpsolve.potentials.potential import Potential
 
@@ -54,14 +55,15 @@ class QuadraticPotential(Potential):
 
     def value(self, xi1: ArrayLike, xi2: ArrayLike) -> NDArray[np.float64]:
         """B(ξ1, ξ2), float64, in the broadcast shape of the arguments."""
-        scaled1 = np.divide(xi1, self.sigma1)
-        scaled2 = np.divide(xi2, self.sigma2)
+        scaled1 = np.divide(check_numbers("xi1", xi1), self.sigma1)
+        scaled2 = np.divide(check_numbers("xi2", xi2), self.sigma2)
         return np.asarray(0.5 * (scaled1**2 + scaled2**2))
 
     def gradient(
         self, xi1: ArrayLike, xi2: ArrayLike
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """(ξ1/σ1², ξ2/σ2²), two float64 arrays in the broadcast shape."""
+        xi1, xi2 = check_numbers("xi1", xi1), check_numbers("xi2", xi2)
         slope1, slope2 = np.broadcast_arrays(
             np.divide(xi1, self.sigma1**2), np.divide(xi2, self.sigma2**2)
         )

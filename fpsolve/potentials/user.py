@@ -9,6 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from fpsolve._arrays import check_numbers
 from fpsolve.potentials.potential import Potential, RadialPotential
 from fpsolve.potentials.probes import check_plane_functions, check_radial_functions
 
@@ -53,11 +54,11 @@ class IsotropicPotential(RadialPotential):
 
     def radial_value(self, r: ArrayLike) -> NDArray[np.float64]:
         """B(r)."""
-        return _as_float(self._value, r)
+        return _as_float(self._value, check_numbers("r", r))
 
     def radial_derivative(self, r: ArrayLike) -> NDArray[np.float64]:
         """B'(r)."""
-        return _as_float(self._derivative, r)
+        return _as_float(self._derivative, check_numbers("r", r))
 
     @property
     def formula(self) -> str:
@@ -117,12 +118,13 @@ class CallablePotential(Potential):
 
     def value(self, xi1: ArrayLike, xi2: ArrayLike) -> NDArray[np.float64]:
         """B(ξ1, ξ2), float64, in the broadcast shape of the arguments."""
-        return _as_float(self._value, xi1, xi2)
+        return _as_float(self._value, *_coordinates(xi1, xi2))
 
     def gradient(
         self, xi1: ArrayLike, xi2: ArrayLike
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """(∂B/∂ξ1, ∂B/∂ξ2), two float64 arrays in the broadcast shape."""
+        xi1, xi2 = _coordinates(xi1, xi2)
         shape = np.broadcast_shapes(np.shape(xi1), np.shape(xi2))
         slope1, slope2 = self._gradient(*_arrays(xi1, xi2))
         return _filled(slope1, shape), _filled(slope2, shape)
@@ -144,6 +146,10 @@ class CallablePotential(Potential):
     def __repr__(self) -> str:
         functions = f"value={_name(self._value)}, gradient={_name(self._gradient)}"
         return f"CallablePotential({functions})"
+
+
+def _coordinates(xi1: ArrayLike, xi2: ArrayLike) -> tuple[NDArray[np.float64], ...]:
+    return check_numbers("xi1", xi1), check_numbers("xi2", xi2)
 
 
 def _array(values: ArrayLike) -> NDArray[np.float64]:

@@ -15,15 +15,19 @@ from fpsolve.models import LayDownModel
 __all__ = ["concentration_of", "start_on"]
 
 Array = NDArray[np.float64]
-LARGEST_CONCENTRATION = 1e8
 
 
 def concentration_of(speed: float) -> float:
     """k with I₁(k)/I₀(k) = v: angles von Mises with it balance a belt of speed v."""
     if speed == 0.0:
         return 0.0
-    found = brentq(lambda k: float(i1e(k) / i0e(k)) - speed, 0.0, LARGEST_CONCENTRATION)
-    return float(found)
+    # I₁/I₀ lies above 1 − 1/(2k) − 1/(2k²): at this k it is beyond v.
+    largest = 2.0 / (1.0 - speed)
+
+    def excess(k: float) -> float:
+        return float(i1e(k) / i0e(k)) - speed
+
+    return float(brentq(excess, 0.0, largest, xtol=2e-12 * speed))
 
 
 def start_on(grid: PhaseSpaceGrid, model: LayDownModel) -> Array:
