@@ -175,7 +175,8 @@ def check_kind(name: str, value: Any, kind: type, remedy: str = "") -> None:
 def check_one_of(name: str, value: Any, known: Iterable[str]) -> None:
     """Raise ValueError unless `value` is one of the known names."""
     names = list(known)
-    if value not in names:
+    # An array would be compared with every name at once.
+    if not isinstance(value, str | None) or value not in names:
         choices = ", ".join(map(repr, names))
         raise ValueError(f"`{name}` must be one of {choices}, got {shown(value)}.")
 

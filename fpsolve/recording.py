@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Mapping
 from typing import Any
 
@@ -11,13 +12,16 @@ from numpy.typing import NDArray
 
 from fpsolve import diagnostics
 from fpsolve.circulation import Circulation, obeys_circulation_law, remaining
-from fpsolve.functionals import RowFunctionals, inverse_of
+from fpsolve.functionals import SMALLEST, RowFunctionals, inverse_of
 from fpsolve.grids import PhaseSpaceGrid
 from fpsolve.models import LayDownModel
+from fpsolve.potentials import Potential
 from fpsolve.potentials.at_points import value_at
 
 Array = NDArray[np.float64]
 
+# A share of H that matters: a warning tells where B beyond 690 is not counted.
+_UNCOUNTED = 1e-3
 BASIC = (
     "s",
     "mass",
@@ -28,6 +32,14 @@ BASIC = (
     "boundary_mass",
     "mass_correction",
 )
+
+
+def uncounted(potential: Potential, grid: PhaseSpaceGrid, ratio: float) -> Array | None:
+    """How far −ln(ratio p_S) lies beyond −ln 1e-300; None where nowhere."""
+    value = np.broadcast_to(potential.value(*grid.plane()), grid.shape[:2])
+    level = potential.normalisation.log_value + math.log(2 * math.pi / ratio)
+    beyond = np.maximum(0.0, value + level + math.log(SMALLEST))
+    return beyond if beyond.any() else None
 
 
 class Recorder:
@@ -50,6 +62,7 @@ class Recorder:
         self, model: LayDownModel, grid: PhaseSpaceGrid, reference: Array | None = None
     ) -> None:
         self.model, self.grid = model, grid
+        given = reference
         self.falls = reference is None and model.has_equilibrium
         self.lowest = math.inf
         self.circulation = (
@@ -59,6 +72,7 @@ class Recorder:
             value_at(model.potential, *grid.plane())
             equilibrium = model.equilibrium(*grid.plane())
             reference = np.broadcast_to(equilibrium, grid.shape[:2])
+        self.uncounted: Array | None = None
         self.reference = reference
         self.ratio = 1.0
         self.inverse: Array | None = None
@@ -68,6 +82,8 @@ class Recorder:
             total = diagnostics.reference_sum(field, grid) * grid.cell_volume
             self.ratio = 1.0 / total if total > 0.0 else np.nan
             self.inverse = inverse_of(reference, self.ratio)
+        if self.inverse is not None and given is None:
+            self.uncounted = uncounted(model.potential, grid, self.ratio)
         # The first record stays when a caller takes `rows` elsewhere.
         self.first: dict[str, float] = {}
         self.rows: list[dict[str, float]] = []
@@ -86,6 +102,8 @@ class Recorder:
             **found.moments(),
         }
         values |= self._kept_laws(values, found)
+        if not self.first:
+            self._check_entropy(values["relative_entropy"], found)
         self.first = self.first or values
         self.rows.append(values)
         return values
@@ -101,6 +119,25 @@ class Recorder:
             lost = found.entropy_dissipation(self.model.noise)
             entropy = found.relative_entropy(self.ratio)
         return {"relative_entropy": entropy, "entropy_dissipation": lost}
+
+    def _check_entropy(self, entropy: float, found: RowFunctionals) -> None:
+        """Warn if the start lies where p_S is too small for a logarithm."""
+        if self.uncounted is None:
+            return
+        positive = found.rows[0] + found.rows[5]
+        # Times zero even an infinite B counts nothing.
+        missing = np.where(positive > 0.0, positive, 0.0)[self.uncounted > 0.0]
+        lost = float(missing @ self.uncounted[self.uncounted > 0.0])
+        lost *= self.grid.cell_volume
+        if lost > _UNCOUNTED * max(1.0, entropy):
+            mass = float(missing.sum()) * self.grid.cell_volume
+            warnings.warn(
+                f"`p0` has a mass of {mass:.2g} where p_S is below {SMALLEST:g}, its "
+                "least value under the logarithm; `relative_entropy` begins at "
+                f"{entropy:.4g} and is too small by {lost:.2g}. Choose a start or a "
+                "box within the walls of the potential.",
+                stacklevel=5,
+            )
 
     def _kept_laws(
         self, values: dict[str, float], found: RowFunctionals

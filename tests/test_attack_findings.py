@@ -3,14 +3,21 @@
 The generator is `validation/reliability/attack.py`.
 """
 
+import re
+import warnings
+
 import numpy as np
 import pytest
 from scipy.special import i0e, i1e
+from scipy.stats import multivariate_normal
 from solutions import relaxing_solution
+from typer.testing import CliRunner
 
 import fpsolve as fp
 from fpsolve import diagnostics, initial, plotting, studies, suggestions
+from fpsolve.cli import app
 from fpsolve.curves import FixedBelt, MovingBelt, RotatingNozzle
+from fpsolve.recording import Recorder
 from fpsolve.stationary.start import concentration_of
 from fpsolve.studies.rates.bounds import averaging_bound, hypocoercive_bound
 
@@ -246,3 +253,66 @@ def test_angles_balance_every_belt(speed):
     # |∂₁B| = ξ1 = A²k/2, unless that is beyond the pattern.
     shift = suggestions.belt_shift(model)
     assert shift in (pytest.approx(0.5e-18 * k, rel=1e-6, abs=1e-12), 0.0)
+
+
+def test_averages_that_would_never_end_are_refused():
+    """The default step is 1/(2A²): 1e12 of them are hours."""
+    told = "`noises` must leave steps that can be taken, got 100000 and with it 2e"
+    with pytest.raises(ValueError, match=told):
+        studies.ergodic_averages(
+            fp.QuadraticPotential(), [1.0, 1e5], s_end=2.0, n_paths=40, seed=1
+        )
+
+
+@pytest.mark.parametrize("path", [slice(None), 3, b"page.html"], ids=repr)
+def test_a_report_goes_to_a_file_with_a_name(path):
+    with pytest.raises(TypeError, match="`path` must be the name of a file, got"):
+        fp.report("result.nc", path)
+
+
+def test_a_report_about_a_folder_has_no_name():
+    """It ended in pathlib's "PosixPath('.') has an empty name"."""
+    done = CliRunner().invoke(app, ["report", "."])
+    assert done.exit_code == 2
+    assert "`path` must be the name of a file, got '.'." in done.stderr
+
+
+def test_a_name_among_few_is_compared_as_one():
+    """An array compared with every name has no truth value."""
+    with pytest.raises(ValueError, match=r"`which` must be one of .*, got array"):
+        diagnostics.marginal(np.ones(GRID.shape), GRID, np.array([1.0, 2.0]))
+
+
+def test_a_gaussian_far_away_is_zero_without_a_word():
+    """Squares overflowed, or left inf − inf."""
+    model = fp.LayDownModel(fp.QuadraticPotential(), 2.0)
+    limit = fp.OrnsteinUhlenbeckLimit(model, (0.2, 0.1), ((1.0, 0.4), (0.4, 0.5)))
+    assert limit.density(1e300, -1e300, 0.1) == 0.0
+    with pytest.raises(TypeError, match="`xi1` must hold real numbers"):
+        limit.density("x", 0.0)
+    places = np.linspace(-2.0, 2.0, 5)
+    law = multivariate_normal(limit.mean(0.1), limit.covariance(0.1))
+    exact = law.pdf(np.stack([places, places**2], axis=-1))
+    # Rounding of a few operations.
+    np.testing.assert_allclose(limit.density(places, places**2, 0.1), exact, rtol=1e-12)
+
+
+@pytest.mark.parametrize(("scale", "is_told"), [(1.5, True), (2.4, False)])
+def test_an_entropy_beyond_the_logarithm_is_told(scale, is_told):
+    """H counts −ln p_S up to 690 only, in whatever unit: what is missing is told."""
+    model = fp.LayDownModel(fp.PowerPotential(12.0, scale), 0.5)
+    grid = fp.PhaseSpaceGrid((4.2, 5.3), (18, 24, 12))
+    p0 = initial.gaussian(grid, (0.3, 0.1), 0.8, 0.2, 1.0)
+    value = model.potential.value(*grid.plane())[:, :, None]
+    exact = value + np.log(2 * np.pi * model.potential.partition_function)
+    true = float((p0 * (np.log(p0) + exact)).sum()) * grid.cell_volume
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always")
+        entropy = Recorder(model, grid).record(p0, 0.0)["relative_entropy"]
+    assert bool(told) == is_told
+    if is_told:
+        missing = re.search(r"too small by ([0-9.e+-]+)\.", str(told[0].message))[1]
+        # Two digits are said; ln of the mass of p_S on the grid moves the limit of 690.
+        assert float(missing) == pytest.approx(true - entropy, rel=0.02)
+    else:
+        assert entropy == pytest.approx(true, rel=2e-3)

@@ -137,6 +137,8 @@ def test_tolerances_are_positive(name):
         fp.solve(fp.drift_kick(MODEL, GRID), P0, **RUN, **option)
 
 
+# The start reaches into the wall, which is told.
+@pytest.mark.filterwarnings("ignore:`p0` has a mass of")
 def test_the_solver_of_py_pde_keeps_the_laws_too():
     wall = fp.LayDownModel(fp.PowerPotential(60.0), 1.0)
     grid = fp.PhaseSpaceGrid(2.5, (40, 40, 8))

@@ -48,5 +48,12 @@ def report(files: Files, out: Out = None, title: Title = None) -> None:
         if out == _STANDARD_OUTPUT:
             typer.echo(report_text(files, title=title), nl=False)
             return
-        page = files[0].with_suffix(".html") if out is None else out
+        page = page_beside(files[0]) if out is None else out
         typer.echo(write_report(files, page, title=title))
+
+
+def page_beside(file: Path) -> Path:
+    """The page of a result, in the same folder; a folder is none."""
+    if not file.name:
+        raise ValueError(f"`path` must be the name of a file, got '{file}'.")
+    return file.with_suffix(".html")

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
+from fpsolve._checks import check_path
 from fpsolve.report.blocks import Section
 from fpsolve.report.reading import existing_file, section_of
 
@@ -56,7 +57,7 @@ def report(
     """
     from fpsolve.io.atomic import atomic_path
 
-    chosen, path = _listed(results), Path(path)
+    chosen, path = _listed(results), check_path("path", path)
     _check_place(chosen, path)
     # Begun before the figures are drawn, so that a place that does not do is told.
     with atomic_path(path) as draft:

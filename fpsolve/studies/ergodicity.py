@@ -42,6 +42,8 @@ N_BATCHES = 40
 _SAVING_STEP = 0.5
 # Every path is averaged at each of them.
 _MOST_SAVED = 100_000
+# Steps of all paths: hours on one core.
+_MOST_PATH_STEPS = 1e12
 # The default step: the splitting is of weak order 2, with an error that grows with the
 # angle A √ds by which noise turns the fibre in a step.
 _LONGEST_STEP, _LARGEST_TURN = 0.1, 0.5
@@ -128,7 +130,8 @@ def ergodic_averages(
     ------
     ValueError
         If exp(-B) is not normalisable, a noise is not positive, `n_paths` is below 40,
-        `ds` does not divide `s_end`, or a function cannot be integrated.
+        `ds` does not divide `s_end`, a function cannot be integrated, or the default
+        step would take more than 1e12 steps.
 
     References
     ----------
@@ -150,6 +153,8 @@ def ergodic_averages(
     amplitudes = _amplitudes(noises)
     moments = equilibrium_moments(potential, functions)
     saved, steps = _arclengths(amplitudes, s_end, ds, n_saved)
+    if ds is None:
+        _check_time(amplitudes, n_paths * s_end / steps)
     tasks = [
         _Task(potential, noise, step, saved, n_paths, child, functions, moments.mean)
         for noise, step, child in zip(
@@ -185,6 +190,17 @@ def _check(
         )
     check_integer("n_paths", n_paths, N_BATCHES)
     check_integer("n_saved", n_saved, 8, _MOST_SAVED)
+
+
+def _check_time(noises: Array, path_steps: Array) -> None:
+    """Raise if the default steps are so short that the study would not end."""
+    worst = int(np.argmax(path_steps))
+    if not path_steps[worst] <= _MOST_PATH_STEPS:
+        raise ValueError(
+            f"`noises` must leave steps that can be taken, got {noises[worst]:g} and "
+            f"with it {path_steps[worst]:.1g} steps of 1/(2 A^2) on all paths; choose "
+            "`ds`, a shorter `s_end` or fewer paths."
+        )
 
 
 def _amplitudes(noises: Iterable[float]) -> Array:

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from fpsolve._arrays import check_numbers
 from fpsolve._checks import check_integer, check_non_negative, check_pair
 from fpsolve.initial import checked_covariance
 from fpsolve.models import LayDownModel
@@ -101,8 +102,12 @@ class OrnsteinUhlenbeckLimit:
         """𝒫(ξ1, ξ2, s), in the broadcast shape of xi1 and xi2."""
         mean, covariance = self.mean(s), self.covariance(s)
         (a, b), (_, c) = np.linalg.inv(covariance)
-        away1, away2 = np.subtract(xi1, mean[0]), np.subtract(xi2, mean[1])
-        exponent = 0.5 * (a * away1**2 + 2 * b * away1 * away2 + c * away2**2)
+        away1 = np.subtract(check_numbers("xi1", xi1), mean[0])
+        away2 = np.subtract(check_numbers("xi2", xi2), mean[1])
+        # As squares: far away they overflow, and the density is zero.
+        with np.errstate(over="ignore"):
+            exponent = 0.5 * (a * (away1 + b / a * away2) ** 2)
+            exponent = exponent + 0.5 * (c - b * b / a) * away2**2
         scale = 2 * math.pi * math.sqrt(np.linalg.det(covariance))
         return np.asarray(np.exp(-exponent) / scale)
 
