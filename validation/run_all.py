@@ -23,6 +23,7 @@ SCRIPTS = (
     "rate_asymptotes.py",
     "large_noise_limit.py",
     "small_noise_limit.py",
+    "reliability/attack.py",
     "reliability/flipped_bytes.py",
     "reliability/kill_and_resume.py",
     "reliability/memory_of_saved_densities.py",

@@ -44,7 +44,7 @@ def drawn(quick: bool, times: int, only: str | None) -> list[tuple[str, int]]:
     return [
         (name, number)
         for name, (_, full, few) in families.items()
-        for number in range(few if quick else full * times)
+        for number in (few if quick else range(full * times))
     ]
 
 

@@ -94,7 +94,7 @@ def spectra(rng: Any, notes: Any) -> None:
         )
 
 
-@family(5, 0)
+@family(5, 1)
 def best_noises(rng: Any, notes: Any) -> None:
     """No other noise has a larger gap than the best one; it scales as σ^(−1/2)."""
     sigma = log_between(rng, 0.05, 20.0)

@@ -194,7 +194,7 @@ def check_words(rng: Any, notes: Any) -> None:
     notes.holds("they agree", not re.search("DISAGREE", done.output))
 
 
-@family(8, 0)
+@family(8, 1)
 def rate_words(rng: Any, notes: Any) -> None:
     """`fpsolve rate`, its cheap parts: the gap is at most A²/2 where B is isotropic."""
     words = ["rate", *potential_words(rng), "--quick", "--workers", "0", *figures(rng)]

@@ -7,15 +7,19 @@ from typing import Any
 
 __all__ = ["FAMILIES", "family"]
 
-# Name, the function, and how many cases of it a full and a quick run draw.
-FAMILIES: dict[str, tuple[Callable[..., None], int, int]] = {}
+# Name, the function, how many cases a full run draws, and which of them a quick one.
+FAMILIES: dict[str, tuple[Callable[..., None], int, tuple[int, ...]]] = {}
 
 
-def family(full: int, quick: int = 1) -> Callable[[Any], Any]:
-    """Register a function case(rng, notes) under its own name."""
+def family(full: int, quick: int | tuple[int, ...] = 1) -> Callable[[Any], Any]:
+    """Register a function case(rng, notes) under its own name.
+
+    A quick run makes the first cases, so many, or those that are named: cheap ones.
+    """
 
     def register(case: Any) -> Any:
-        FAMILIES[case.__name__] = (case, full, quick)
+        chosen = tuple(range(quick)) if isinstance(quick, int) else quick
+        FAMILIES[case.__name__] = (case, full, chosen)
         return case
 
     return register

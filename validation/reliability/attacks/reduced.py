@@ -24,7 +24,7 @@ from .families import family
 from .laws import SIGMAS
 
 
-@family(14, 2)
+@family(14)
 def energy_laws(rng: Any, notes: Any) -> None:
     """J′ = −g S, ∫S dg = π ∫ r e^{−B} dr, period by quadrature, first odd rate A²/2."""
     base = isotropic(rng)

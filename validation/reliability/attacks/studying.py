@@ -60,7 +60,7 @@ def gaps_in_studies(rng: Any, notes: Any) -> None:
         notes.close("gap", gap, float(exact), 1e-5 * exact + exact.error)
 
 
-@family(3, 0)
+@family(3, 1)
 def relaxations_in_studies(rng: Any, notes: Any) -> None:
     """The fitted rate is twice the gap within its error, or says why not."""
     base = one_of(
@@ -110,7 +110,7 @@ def sweeps_and_orders(rng: Any, notes: Any) -> None:
     notes.close("observed", observed[np.isfinite(observed)], order, 1e-9)
 
 
-@family(5, 0)
+@family(5, 1)
 def cross_checks_agree(rng: Any, notes: Any) -> None:
     """Density and paths of one process agree; of two they do not."""
     base = isotropic(rng, smooth=True, own=False)

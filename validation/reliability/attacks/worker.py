@@ -30,6 +30,7 @@ MODULES = (
     "studying",
     "mutations",
     "command_lines",
+    "issues",
 )
 # Seconds of CPU time that a case may take, and of waiting without any.
 LIMIT, STANDSTILL = 120.0, 240.0
