@@ -17,6 +17,8 @@ __all__ = ["check_resolved", "discretisation_for", "orbit_radius"]
 # A √R, R the radius of the circular orbit. Below it rates are lost in the rounding of
 # the frequencies, above it the other way round, and no basis that fits helps.
 QUIETEST, LOUDEST = 1e-3, 1e6
+# Radii at which a circular orbit is looked for: first, and in units far from usual.
+_USUAL, _SHORTEST = (1e-9, 1e9), 1e-76
 
 
 def discretisation_for(model: LayDownModel) -> Discretisation:
@@ -101,7 +103,19 @@ def orbit_radius(potential: Potential) -> float:
     """
     if isinstance(potential, QuadraticPotential):
         return min(potential.sigma1, potential.sigma2)
-    radii = np.geomspace(1e-9, 1e9, 3601)
-    turning = radii * potential.radial_derivative(radii)
+    radius = _first_turning(potential, *_USUAL)
+    if radius == _USUAL[0]:
+        return _first_turning(potential, _SHORTEST, _USUAL[0])
+    if math.isinf(radius):
+        return _first_turning(potential, _USUAL[1], 1 / _SHORTEST)
+    return radius
+
+
+def _first_turning(potential: Potential, shortest: float, longest: float) -> float:
+    """The first of two hundred radii a decade with r B'(r) ≥ 1."""
+    n = round(200 * math.log10(longest / shortest)) + 1
+    radii = np.geomspace(shortest, longest, n)
+    with np.errstate(over="ignore", invalid="ignore"):
+        turning = radii * potential.radial_derivative(radii)
     beyond = np.flatnonzero(~(turning < 1))
     return float(radii[beyond[0]]) if beyond.size else math.inf

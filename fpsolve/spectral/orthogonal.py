@@ -19,9 +19,9 @@ Profile = Callable[[Any], Array]
 # Where r^(2 degree) times the weight has fallen by exp(-DROP), a polynomial of that
 # degree has fallen by at least half of it: below 1e-17 of its largest value.
 DROP = 80.0
-# Radii that are tried: sixteen to the octave, over the range of every float64 length
-# that a potential could sensibly have.
-_RADII = np.exp2(np.arange(-40 * 16, 40 * 16) / 16)
+# Radii that are tried: sixteen to the octave, over the range of lengths that potentials
+# can have, 1e-75 to 1e75.
+_RADII = np.exp2(np.arange(-256 * 16, 256 * 16) / 16)
 # Gauss-Legendre nodes of a panel; 20 integrate polynomials of degree 39 exactly.
 _PANEL = 20
 
