@@ -127,7 +127,8 @@ def relative_entropy(p: Array, grid: PhaseSpaceGrid, reference: Array) -> float:
     Computed as ∫ p ln(p/r′) + M ln(M/S), where r′ = r M/S has the mass M of p on this
     grid and S is that of r: the logarithms are then as small as p is near r′, and an
     entropy of 1e-16 still has correct digits. Cells with p ≤ 0 contribute nothing,
-    the limit of small p; look at the minimum beside it.
+    the limit of small p; look at the minimum beside it. r′ counts as 1e-300 where it is
+    below: mass behind a wall of B > 690 makes H too small.
 
     Parameters
     ----------

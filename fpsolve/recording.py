@@ -56,6 +56,11 @@ class Recorder:
     reference : ndarray, shape (n1, n2) or (n1, n2, n_alpha), or None
         What the entropy is relative to; p_S where e^{−B} is normalisable, and for
         other potentials nothing: entropy and dissipation are then NaN.
+
+    Warns
+    -----
+    UserWarning
+        If the start has mass where p_S is below 1e-300, which H does not count further.
     """
 
     def __init__(
