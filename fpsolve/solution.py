@@ -148,8 +148,7 @@ class Solution:
             self.series["relative_entropy"] - self.entropy_floor,
             window,
             errors=known,
-            step_error=self._kink_error()
-            + (self._step_error() if known is None else 0),
+            step_error=resolution,
         )
 
     def _kink_error(self) -> float:
