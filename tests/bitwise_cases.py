@@ -13,7 +13,7 @@ import numpy as np
 
 import fpsolve as fp
 from fpsolve import _threads
-from fpsolve.schemes.rotation import RotationDiffusion
+from fpsolve.density.schemes.rotation import RotationDiffusion
 
 GRID = fp.PhaseSpaceGrid(5.0, (20, 16, 16))
 QUADRATIC, LINEAR = fp.QuadraticPotential(), fp.LinearPotential()

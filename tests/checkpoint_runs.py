@@ -3,13 +3,13 @@
 import numpy as np
 
 from fpsolve import initial
-from fpsolve.checkpoints import Checkpoint
-from fpsolve.curves import RotatingNozzle
-from fpsolve.grids import PhaseSpaceGrid
-from fpsolve.models import LayDownModel
-from fpsolve.potentials import QuadraticPotential
-from fpsolve.schemes import drift_kick, semi_lagrangian
-from fpsolve.solve import solve
+from fpsolve.density.checkpoints import Checkpoint
+from fpsolve.density.schemes import drift_kick, semi_lagrangian
+from fpsolve.density.solve import solve
+from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.model.curves import RotatingNozzle
+from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.potentials import QuadraticPotential
 
 GRID = PhaseSpaceGrid((6.0, 5.5), (14, 12, 8))
 MODEL = LayDownModel(QuadraticPotential(), 1.0)

@@ -14,9 +14,9 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, settings
 
-from fpsolve.grids import PhaseSpaceGrid
-from fpsolve.models import LayDownModel
-from fpsolve.potentials import QuadraticPotential
+from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.potentials import QuadraticPotential
 
 # A shell ignores this signal in what it runs in the background, and so do all commands
 # that are started from there; tests send it to commands.
@@ -69,7 +69,7 @@ def unsynced(monkeypatch):
 @pytest.fixture
 def on_threads(monkeypatch):
     """`on_threads(n, f)` calls f on n threads of numba, however little it computes."""
-    monkeypatch.setattr("fpsolve._threads.CELLS_PER_THREAD", 1)
+    monkeypatch.setattr("fpsolve._kernels.threads.CELLS_PER_THREAD", 1)
     before = numba.get_num_threads()
 
     def call(n, f):

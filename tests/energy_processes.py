@@ -4,7 +4,7 @@ from functools import cache
 
 import numpy as np
 
-from fpsolve.potentials import (
+from fpsolve.model.potentials import (
     IsotropicPotential,
     LinearPotential,
     PowerPotential,

@@ -3,12 +3,12 @@
 import numpy as np
 
 from fpsolve._kernels import functionals
-from fpsolve.grids import PhaseSpaceGrid
-from fpsolve.models import LayDownModel
-from fpsolve.potentials import QuadraticPotential
-from fpsolve.schemes.diffusion import ImplicitDiffusion
-from fpsolve.schemes.rotation import RotationDiffusion
-from fpsolve.schemes.stencils import flux_taps, shift_taps
+from fpsolve.density.schemes.diffusion import ImplicitDiffusion
+from fpsolve.density.schemes.rotation import RotationDiffusion
+from fpsolve.density.schemes.stencils import flux_taps, shift_taps
+from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.potentials import QuadraticPotential
 
 
 class Arguments:

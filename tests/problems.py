@@ -11,10 +11,10 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import minimize_scalar
 
 from fpsolve import initial
-from fpsolve.curves import FixedBelt
-from fpsolve.grids import PhaseSpaceGrid
-from fpsolve.models import LayDownModel
-from fpsolve.potentials import FreePotential
+from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.model.curves import FixedBelt
+from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.potentials import FreePotential
 
 
 @dataclass(frozen=True)

@@ -10,17 +10,17 @@ import numpy as np
 from solutions import relaxing_solution
 
 import fpsolve as fp
-from fpsolve.initial import gaussian
-from fpsolve.io import save
-from fpsolve.io.energy import tables_dataset
+from fpsolve.grids.initial import gaussian
+from fpsolve.pages.page import html_page
+from fpsolve.pages.reading import section_of
 from fpsolve.paths import GaussianLaw
-from fpsolve.report.page import html_page
-from fpsolve.report.reading import section_of
+from fpsolve.reduced.energy.dataset import tables_dataset
+from fpsolve.results import save
 from fpsolve.studies import compare
 from fpsolve.studies.limits.large_noise_dataset import large_noise_dataset
 from fpsolve.studies.limits.small_noise_dataset import small_noise_dataset
 from fpsolve.studies.rates.dataset import rates_dataset, spectrum_dataset
-from fpsolve.studies.rates.sweep import Case
+from fpsolve.studies.sweeps.sweep import Case
 
 POTENTIAL = fp.QuadraticPotential()
 MODEL = fp.LayDownModel(POTENTIAL, noise=1.0)

@@ -3,11 +3,11 @@
 import numpy as np
 
 from fpsolve import initial
-from fpsolve.grids import PhaseSpaceGrid
-from fpsolve.models import LayDownModel
-from fpsolve.potentials import QuadraticPotential
-from fpsolve.recording import Recorder
-from fpsolve.solution import Solution
+from fpsolve.density.recorder import Recorder
+from fpsolve.density.solution import Solution
+from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.potentials import QuadraticPotential
 
 RATE = 0.6
 PROVENANCE = {

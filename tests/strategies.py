@@ -5,17 +5,17 @@ from hypothesis import settings
 from hypothesis import strategies as st
 
 from fpsolve import initial
-from fpsolve.curves import (
+from fpsolve.errors import FpsolveError
+from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.model.curves import (
     EllipticNozzle,
     FixedBelt,
     MovingBelt,
     OscillatingNozzle,
     RotatingNozzle,
 )
-from fpsolve.errors import FpsolveError
-from fpsolve.grids import PhaseSpaceGrid
-from fpsolve.models import LayDownModel
-from fpsolve.potentials import (
+from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.potentials import (
     CallablePotential,
     IsotropicPotential,
     LinearPotential,

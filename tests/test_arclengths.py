@@ -6,9 +6,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import fpsolve as fp
-from fpsolve._checks import told_apart
-from fpsolve.schedule import make_schedule, saved_index
-from fpsolve.studies.steps import common_step
+from fpsolve._support.checks import told_apart
+from fpsolve.evolution.schedule import make_schedule, saved_index
+from fpsolve.studies.agreement.steps import common_step
 
 MODEL = fp.LayDownModel(fp.QuadraticPotential(), 1.0)
 GRID = fp.PhaseSpaceGrid(5.0, (8, 8, 8))

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 from fpsolve import initial
+from fpsolve.density.schemes import drift_kick, semi_lagrangian
+from fpsolve.density.solve import solve
 from fpsolve.errors import GridMismatchError
-from fpsolve.grids import PhaseSpaceGrid
-from fpsolve.models import LayDownModel
-from fpsolve.potentials import QuadraticPotential
-from fpsolve.schedule import make_schedule
-from fpsolve.schemes import drift_kick, semi_lagrangian
-from fpsolve.solve import solve
+from fpsolve.evolution.schedule import make_schedule
+from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.potentials import QuadraticPotential
 
 MODEL = LayDownModel(QuadraticPotential(), 1.0)
 GRID = PhaseSpaceGrid(6.0, (20, 20, 16))

@@ -16,9 +16,9 @@ from typer.testing import CliRunner
 import fpsolve as fp
 from fpsolve import diagnostics, initial, plotting, studies, suggestions
 from fpsolve.cli import app
-from fpsolve.curves import FixedBelt, MovingBelt, RotatingNozzle
-from fpsolve.recording import Recorder
-from fpsolve.stationary.start import concentration_of
+from fpsolve.density.recorder import Recorder
+from fpsolve.density.stationary.start import concentration_of
+from fpsolve.model.curves import FixedBelt, MovingBelt, RotatingNozzle
 from fpsolve.studies.rates.bounds import averaging_bound, hypocoercive_bound
 
 GRID = fp.PhaseSpaceGrid(5.0, (9, 8, 8))

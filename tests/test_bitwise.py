@@ -23,7 +23,7 @@ from bitwise_cases import (
 
 import fpsolve as fp
 from fpsolve import studies
-from fpsolve._blas import one_blas_thread
+from fpsolve._support.blas import one_blas_thread
 
 HERE = Path(__file__).parent
 

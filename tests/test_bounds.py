@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from fpsolve.models import LayDownModel
-from fpsolve.potentials import (
+from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.potentials import (
     CallablePotential,
     FreePotential,
     IsotropicPotential,
@@ -14,14 +14,14 @@ from fpsolve.potentials import (
     PowerPotential,
     QuadraticPotential,
 )
-from fpsolve.spectral.gap import spectral_gap
+from fpsolve.spectral.eigen.gap import spectral_gap
+from fpsolve.studies.constants.poincare import poincare_constant
 from fpsolve.studies.rates.bounds import (
     averaging_bound,
     hypocoercive_bound,
     large_noise_asymptote,
     small_noise_asymptote,
 )
-from fpsolve.studies.rates.poincare import poincare_constant
 
 QUADRATIC = QuadraticPotential()
 

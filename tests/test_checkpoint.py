@@ -20,11 +20,12 @@ from checkpoint_runs import (
 )
 
 import fpsolve as fp
-from fpsolve.checkpoints import durable, store
-from fpsolve.checkpoints.status import status_of
+from fpsolve._support import durable
+from fpsolve.density.checkpoints import store
+from fpsolve.density.checkpoints.status import status_of
+from fpsolve.density.schemes import drift_kick
+from fpsolve.density.solve import solve
 from fpsolve.errors import CheckpointError, MassDriftError, RunInterrupted
-from fpsolve.schemes import drift_kick
-from fpsolve.solve import solve
 
 
 @pytest.fixture(autouse=True)

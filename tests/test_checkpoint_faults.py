@@ -21,14 +21,14 @@ from checkpoint_runs import (
 )
 
 import fpsolve as fp
-from fpsolve.checkpoints import Checkpoint, manifest, snapshots
-from fpsolve.checkpoints.every import parse_interval
-from fpsolve.checkpoints.folder import remove_folder
-from fpsolve.checkpoints.status import status_of
-from fpsolve.checkpoints.store import PassStore
+from fpsolve._support.provenance import versions
+from fpsolve.density.checkpoints import Checkpoint, manifest, snapshots
+from fpsolve.density.checkpoints.every import parse_interval
+from fpsolve.density.checkpoints.folder import remove_folder
+from fpsolve.density.checkpoints.status import status_of
+from fpsolve.density.checkpoints.store import PassStore
+from fpsolve.density.schemes import drift_kick, semi_lagrangian
 from fpsolve.errors import CheckpointError, CheckpointMismatchError, FileFormatError
-from fpsolve.provenance import versions
-from fpsolve.schemes import drift_kick, semi_lagrangian
 
 
 @pytest.fixture(autouse=True)
@@ -221,7 +221,9 @@ def test_a_folder_of_something_else_is_not_written_to(tmp_path):
 def test_a_checkpoint_that_is_half_removed_is_begun_anew(tmp_path, monkeypatch):
     run(tmp_path / "run")
     with monkeypatch.context() as patch:
-        patch.setattr("fpsolve.checkpoints.folder.shutil.rmtree", lambda path: None)
+        patch.setattr(
+            "fpsolve.density.checkpoints.folder.shutil.rmtree", lambda path: None
+        )
         remove_folder(tmp_path / "run")
     assert len(list((tmp_path / "run").iterdir())) > 3
     with pytest.raises(FileFormatError, match=r"it holds no `run.json`"):
@@ -444,7 +446,7 @@ def test_other_versions_are_a_warning(tmp_path, monkeypatch):
     old = {**versions(), "numpy": "2.0.0"}
     with monkeypatch.context() as patch:
         for module in ("folder", "manifest"):
-            patch.setattr(f"fpsolve.checkpoints.{module}.versions", lambda: old)
+            patch.setattr(f"fpsolve.density.checkpoints.{module}.versions", lambda: old)
         folder = left_at(5, tmp_path / "run")
     with pytest.warns(UserWarning, match=r"begun with numpy 2\.0\.0, now .*last bits"):
         run(folder)
@@ -522,7 +524,7 @@ def test_a_disk_that_is_full_at_ctrl_c_is_told_in_the_message(tmp_path, monkeypa
 
 
 def test_a_disk_that_is_full_from_the_beginning_computes_nothing(tmp_path, monkeypatch):
-    monkeypatch.setattr("fpsolve.checkpoints.start.np.savez", full)
+    monkeypatch.setattr("fpsolve.density.checkpoints.start.np.savez", full)
     with pytest.raises(CheckpointError, match="No space left on device; nothing was computed") as caught:  # fmt: skip  # noqa: E501
         run(tmp_path / "run")
     assert caught.value.solution is None

@@ -12,7 +12,7 @@ from command_line import HANGS, assert_mistake, command_waiting_at, files
 from solutions import relaxing_solution
 
 from fpsolve import io
-from fpsolve.config import load_config
+from fpsolve.cli.config import load_config
 
 ROOT = Path(__file__).parents[1]
 CONFIG = """

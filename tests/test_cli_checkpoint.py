@@ -10,8 +10,8 @@ from checkpoint_runs import Killed, assert_same_bits, left_at
 from command_line import HANGS, assert_mistake, command_waiting_at, files
 
 from fpsolve import io
-from fpsolve.checkpoints import snapshots
-from fpsolve.checkpoints.status import status_of
+from fpsolve.density.checkpoints import snapshots
+from fpsolve.density.checkpoints.status import status_of
 
 CONFIG = """
 [potential]

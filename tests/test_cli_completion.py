@@ -7,7 +7,7 @@ import sys
 import pytest
 
 from fpsolve.cli import completion
-from fpsolve.config import EXAMPLES
+from fpsolve.cli.config import EXAMPLES
 from fpsolve.studies.rates.cases import PARTS
 
 

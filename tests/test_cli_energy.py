@@ -6,7 +6,7 @@ import xarray as xr
 from command_line import assert_mistake, files
 from matplotlib.image import imread
 
-from fpsolve.potentials import QuadraticPotential
+from fpsolve.model.potentials import QuadraticPotential
 from fpsolve.reduced.energy import EnergyProcess
 
 PROCESS = EnergyProcess(QuadraticPotential(), 0.3)

@@ -11,8 +11,8 @@ from solutions import relaxing_solution
 
 import fpsolve as fp
 from fpsolve import io
-from fpsolve.config import PathsConfig, load_config
-from fpsolve.report.numbers import with_error
+from fpsolve.cli.config import PathsConfig, load_config
+from fpsolve.pages.numbers import with_error
 
 ROOT = Path(__file__).parents[1]
 CONFIG = """

@@ -10,10 +10,10 @@ from command_line import assert_mistake, files
 from solutions import PROVENANCE, relaxing_solution
 
 import fpsolve as fp
-from fpsolve.comparisons.alignment import aligned
-from fpsolve.comparisons.densities import to_angles
-from fpsolve.comparisons.differences import difference_of, distance
 from fpsolve.plotting.differences import plot_comparison
+from fpsolve.results.compare.alignment import aligned
+from fpsolve.results.compare.densities import to_angles
+from fpsolve.results.compare.differences import difference_of, distance
 
 SHAPE = (12, 14, 8)
 
@@ -371,7 +371,7 @@ def test_the_environment_names_no_host_no_user_and_no_path():
     import getpass
     import platform
 
-    from fpsolve.environment import environment
+    from fpsolve._support.environment import environment
 
     text = json.dumps(environment())
     for name in (platform.node(), getpass.getuser()):

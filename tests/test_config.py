@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import fpsolve as fp
-from fpsolve.config import (
+from fpsolve.cli.config import (
     EXAMPLES,
     PathsConfig,
     RunConfig,
@@ -19,10 +19,10 @@ from fpsolve.config import (
     load_config,
     read_config,
 )
-from fpsolve.config.complaints import _SECTIONS
-from fpsolve.config.names import suggestion
+from fpsolve.cli.config.complaints import _SECTIONS
+from fpsolve.cli.config.names import suggestion
+from fpsolve.density.suggestions import suggest_grid, suggest_step
 from fpsolve.errors import ConfigurationError
-from fpsolve.suggestions import suggest_grid, suggest_step
 
 TEXT = """
 [potential]

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import fpsolve as fp
-from fpsolve.config import (
+from fpsolve.cli.config import (
     PATHS_EXAMPLE,
     PathsConfig,
     RunConfig,
@@ -14,7 +14,7 @@ from fpsolve.config import (
     load_config,
     read_config,
 )
-from fpsolve.config.paths import PathsSection
+from fpsolve.cli.config.paths import PathsSection
 from fpsolve.errors import ConfigurationError
 from fpsolve.paths import EquilibriumLaw, GaussianLaw, PointLaw
 

@@ -21,14 +21,14 @@ from fpsolve.paths import (
 )
 from fpsolve.plotting.comparison import plot_cross_check
 from fpsolve.studies import CrossCheck, compare, cross_check
-from fpsolve.studies import comparison as comparison_module
-from fpsolve.studies.coarser import (
+from fpsolve.studies.agreement import cross_check as comparison_module
+from fpsolve.studies.agreement.coarser import (
     coarsened,
     coarser_runs,
     on_grid,
     start_noncentrality,
 )
-from fpsolve.studies.steps import common_step, paths_step
+from fpsolve.studies.agreement.steps import common_step, paths_step
 
 GRID = fp.PhaseSpaceGrid(5.5, (48, 48, 32))
 START = GaussianLaw((1.0, 0.5), 0.3, angle=math.pi / 2, concentration=2.0)
@@ -530,7 +530,7 @@ def test_the_names_of_the_package_are_loaded_on_first_use():
     code = (
         "import sys, fpsolve.studies as studies\n"
         "print(sorted({'numpy', 'scipy', 'numba'} & sys.modules.keys()))\n"
-        "studies.cross_check; print('fpsolve.studies.ergodicity' in sys.modules)"
+        "studies.cross_check; print('fpsolve.studies.ergodicity.averages' in sys.modules)"
     )
     done = subprocess.run(
         [sys.executable, "-c", code], capture_output=True, text=True, check=False

@@ -9,7 +9,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fpsolve import initial
-from fpsolve.curves import (
+from fpsolve.density.schemes import drift_kick, semi_lagrangian
+from fpsolve.density.solve import solve
+from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.model.curves import (
     EllipticNozzle,
     FixedBelt,
     MovingBelt,
@@ -18,12 +21,9 @@ from fpsolve.curves import (
     TabulatedCurve,
     curve_from_dict,
 )
-from fpsolve.grids import PhaseSpaceGrid
-from fpsolve.models import LayDownModel
+from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.potentials import QuadraticPotential
 from fpsolve.paths import sample_paths
-from fpsolve.potentials import QuadraticPotential
-from fpsolve.schemes import drift_kick, semi_lagrangian
-from fpsolve.solve import solve
 
 TABLE_S = np.linspace(-10.0, 1010.0, 2041)
 NAMED = [

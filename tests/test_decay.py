@@ -6,11 +6,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 from problems import DecayingCirculation
 
-from fpsolve.decay import fit_decay
-from fpsolve.grids import PhaseSpaceGrid
-from fpsolve.potentials import QuadraticPotential
-from fpsolve.schemes import drift_kick
-from fpsolve.solve import solve
+from fpsolve.density.schemes import drift_kick
+from fpsolve.density.solve import solve
+from fpsolve.evolution.decay import fit_decay
+from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.model.potentials import QuadraticPotential
 
 S = np.linspace(0.0, 10.0, 101)
 

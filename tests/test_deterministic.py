@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 from problems import DecayingCirculation, TracedCharacteristics
 
-from fpsolve.curves import FixedBelt, RotatingNozzle
-from fpsolve.diagnostics import l1_distance, mass
-from fpsolve.grids import PhaseSpaceGrid
-from fpsolve.potentials import PowerPotential, QuadraticPotential
-from fpsolve.schemes import drift_kick, semi_lagrangian
-from fpsolve.solve import solve
+from fpsolve.density.schemes import drift_kick, semi_lagrangian
+from fpsolve.density.solve import solve
+from fpsolve.grids.diagnostics import l1_distance, mass
+from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.model.curves import FixedBelt, RotatingNozzle
+from fpsolve.model.potentials import PowerPotential, QuadraticPotential
 
 GRID = PhaseSpaceGrid(6.0, (44, 44, 48))
 

@@ -8,7 +8,7 @@ from orders import assert_order, measure_order
 from scipy.special import i0, i1
 
 from fpsolve import initial
-from fpsolve.diagnostics import (
+from fpsolve.grids.diagnostics import (
     boundary_mass,
     entropy_dissipation,
     entropy_floor,
@@ -19,9 +19,9 @@ from fpsolve.diagnostics import (
     negative_mass,
     relative_entropy,
 )
-from fpsolve.grids import PhaseSpaceGrid
-from fpsolve.models import LayDownModel
-from fpsolve.potentials import LinearPotential, QuadraticPotential
+from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.potentials import LinearPotential, QuadraticPotential
 
 MEAN, COVARIANCE = (0.7, -0.4), np.array([[0.6, 0.2], [0.2, 0.4]])
 ANGLE, CONCENTRATION = 0.9, 2.5

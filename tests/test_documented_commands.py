@@ -9,7 +9,7 @@ from pages import FENCE, ROOT, all_pages, fences, name_of
 from typer.testing import CliRunner
 
 from fpsolve.cli import app
-from fpsolve.config import PathsConfig, RunConfig, load_config
+from fpsolve.cli.config import PathsConfig, RunConfig, load_config
 
 COMMANDS = typer.main.get_command(app)
 # Whichever click typer is made of, its own or the installed one.

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from energy_processes import PROCESSES
 
-from fpsolve.potentials import (
+from fpsolve.model.potentials import (
     FreePotential,
     IsotropicPotential,
     QuadraticPotential,

@@ -8,7 +8,7 @@ import pytest
 from energy_processes import CURVATURES, NOISE, PROCESSES
 from scipy.integrate import quad
 
-from fpsolve.potentials import (
+from fpsolve.model.potentials import (
     IsotropicPotential,
     LinearPotential,
     PowerPotential,

@@ -11,7 +11,7 @@ from hypothesis.extra.numpy import arrays
 from orders import assert_order, measure_order
 from scipy.linalg import expm
 
-from fpsolve.potentials import QuadraticPotential
+from fpsolve.model.potentials import QuadraticPotential
 from fpsolve.reduced.energy import EnergyProcess
 
 EPS = np.finfo(float).eps

@@ -5,12 +5,12 @@ import pytest
 from energy_processes import NOISE, PROCESSES, spectrum_of
 from orders import assert_order, measure_order
 
-from fpsolve.models import LayDownModel
-from fpsolve.potentials import QuadraticPotential
+from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.potentials import QuadraticPotential
 from fpsolve.reduced.energy import EnergyProcess
 from fpsolve.reduced.energy import spectrum as module
 from fpsolve.reduced.energy.elements import Elements, graded_faces
-from fpsolve.spectral.spectrum import spectrum
+from fpsolve.spectral.eigen.spectrum import spectrum
 
 FAMILIES = ("even", "odd")
 RATE = NOISE**2 / 2

@@ -9,17 +9,17 @@ import pytest
 import xarray as xr
 from matplotlib.mathtext import MathTextParser
 
-from fpsolve.plotting.ergodicity import plot_ergodic_averages
-from fpsolve.potentials import (
+from fpsolve.model.potentials import (
     FreePotential,
     IsotropicPotential,
     LinearPotential,
     PowerPotential,
     QuadraticPotential,
 )
-from fpsolve.studies.asymptotic_variance import least_noise, settled_slope
-from fpsolve.studies.ergodic_dataset import averages_dataset
-from fpsolve.studies.ergodicity import ergodic_averages, fit_ergodic_error
+from fpsolve.plotting.ergodicity import plot_ergodic_averages
+from fpsolve.studies.ergodicity.asymptotic_variance import least_noise, settled_slope
+from fpsolve.studies.ergodicity.averages import ergodic_averages, fit_ergodic_error
+from fpsolve.studies.ergodicity.dataset import averages_dataset
 from fpsolve.studies.observables import (
     Circulation,
     EquilibriumMoments,

@@ -8,9 +8,9 @@ import result_files
 
 import fpsolve as fp
 from fpsolve import plotting, studies
-from fpsolve.io.writing import write_dataset
+from fpsolve._support.writing import write_dataset
+from fpsolve.pages.page import report_text
 from fpsolve.plotting.files import possible_figures
-from fpsolve.report.page import report_text
 
 PROCESS = fp.EnergyProcess(fp.QuadraticPotential(), 0.5)
 LIMIT = fp.HydrodynamicLimit(

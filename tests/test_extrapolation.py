@@ -6,14 +6,14 @@ from orders import assert_order, measure_order
 from problems import DecayingCirculation
 
 from fpsolve import initial
-from fpsolve.curves import RotatingNozzle
-from fpsolve.diagnostics import l1_distance, mass, moments, relative_entropy
-from fpsolve.extrapolation import largest_nearby
-from fpsolve.grids import PhaseSpaceGrid
-from fpsolve.models import LayDownModel
-from fpsolve.potentials import QuadraticPotential
-from fpsolve.schemes import drift_kick, semi_lagrangian
-from fpsolve.solve import solve
+from fpsolve.density.schemes import drift_kick, semi_lagrangian
+from fpsolve.density.solve import solve
+from fpsolve.evolution.extrapolation import largest_nearby
+from fpsolve.grids.diagnostics import l1_distance, mass, moments, relative_entropy
+from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.model.curves import RotatingNozzle
+from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.potentials import QuadraticPotential
 
 MODEL = LayDownModel(QuadraticPotential(), 1.0)
 GRID = PhaseSpaceGrid(6.0, (20, 20, 16))

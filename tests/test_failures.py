@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 
 from fpsolve import initial
+from fpsolve.density.schemes import drift_kick, semi_lagrangian
+from fpsolve.density.solve import solve
 from fpsolve.errors import (
     DomainTooSmallError,
     EntropyRiseError,
@@ -13,11 +15,9 @@ from fpsolve.errors import (
     NonFiniteDensityError,
     RunInterrupted,
 )
-from fpsolve.grids import PhaseSpaceGrid
-from fpsolve.models import LayDownModel
-from fpsolve.potentials import FreePotential, QuadraticPotential
-from fpsolve.schemes import drift_kick, semi_lagrangian
-from fpsolve.solve import solve
+from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.potentials import FreePotential, QuadraticPotential
 
 MODEL = LayDownModel(QuadraticPotential(), 1.0)
 GRID = PhaseSpaceGrid(6.0, (20, 20, 16))

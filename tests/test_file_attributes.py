@@ -11,12 +11,12 @@ import xarray as xr
 from malformed import files as table
 
 import fpsolve as fp
-from fpsolve._json import bounded_json
+from fpsolve._support.declared import declared
+from fpsolve._support.json_text import bounded_json
+from fpsolve._support.netcdf import read_dataset
+from fpsolve._support.writing import write_dataset
 from fpsolve.errors import FileFormatError, NotRepeatableError
-from fpsolve.io.declared import declared
-from fpsolve.io.files import read_dataset
-from fpsolve.io.recipes import read_recipe
-from fpsolve.io.writing import write_dataset
+from fpsolve.studies.recipe import read_recipe
 
 DEEP = "[" * 100_000 + "]" * 100_000
 WRONG = [
@@ -135,7 +135,7 @@ def test_they_are_accepted_in_a_store_too(tmp_path):
 
 
 def test_an_older_file_does_not_name_its_attributes_and_is_read(tmp_path):
-    from fpsolve.io import checksums
+    from fpsolve._support import checksums
 
     dataset = fp.io.to_xarray(table.solution())
     old = dataset.assign_attrs(
@@ -182,7 +182,7 @@ def test_a_variable_that_nobody_asked_for_is_not_read(tmp_path):
 def test_a_size_beyond_memory_is_refused_before_it_is_read(
     size, name, chunk, tmp_path, monkeypatch
 ):
-    monkeypatch.setattr("fpsolve.io.sizes.allowed_memory", lambda: 2.0**29)
+    monkeypatch.setattr("fpsolve._support.sizes.allowed_memory", lambda: 2.0**29)
     path = table.tampered(
         lambda one: None, table.write_solution(tmp_path / "a.nc")
     )  # without checksums

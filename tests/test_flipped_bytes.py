@@ -10,7 +10,7 @@ from malformed import files as table
 from malformed.stores import without
 
 import fpsolve as fp
-from fpsolve.checkpoints import store
+from fpsolve.density.checkpoints import store
 from fpsolve.errors import CheckpointError, FileFormatError, FpsolveError
 
 # validation/reliability/flipped_bytes.py does this hundreds of times.

@@ -10,14 +10,17 @@ from hypothesis.extra.numpy import arrays
 from scipy import special, stats
 
 import fpsolve as fp
-from fpsolve.studies.cell_probabilities import cell_averages, cell_probabilities
-from fpsolve.studies.goodness_of_fit import (
+from fpsolve.studies.agreement.cell_probabilities import (
+    cell_averages,
+    cell_probabilities,
+)
+from fpsolve.studies.agreement.goodness_of_fit import (
     POWER,
     chi_square,
     largest_deviation,
     z_score,
 )
-from fpsolve.studies.partition import (
+from fpsolve.studies.agreement.partition import (
     ELSEWHERE,
     equal_probability_bins,
     equal_probability_boxes,

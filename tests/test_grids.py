@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fpsolve.errors import GridMismatchError
-from fpsolve.grids import PhaseSpaceGrid
+from fpsolve.grids.phase_space import PhaseSpaceGrid
 
 GRID = PhaseSpaceGrid(half_width=(3.0, 2.0), shape=(6, 7, 8))
 

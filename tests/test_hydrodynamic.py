@@ -5,10 +5,10 @@ import math
 import numpy as np
 import pytest
 
-from fpsolve.curves import MovingBelt
-from fpsolve.models import LayDownModel
-from fpsolve.planes import PlaneGrid
-from fpsolve.potentials import (
+from fpsolve.grids.plane import PlaneGrid
+from fpsolve.model.curves import MovingBelt
+from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.potentials import (
     CallablePotential,
     IsotropicPotential,
     LinearPotential,

@@ -5,11 +5,11 @@ import math
 import numpy as np
 import pytest
 
-from fpsolve.curves import Curve, MovingBelt, RotatingNozzle
 from fpsolve.errors import DomainTooSmallError, GridMismatchError
-from fpsolve.models import LayDownModel
-from fpsolve.planes import PlaneGrid
-from fpsolve.potentials import (
+from fpsolve.grids.plane import PlaneGrid
+from fpsolve.model.curves import Curve, MovingBelt, RotatingNozzle
+from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.potentials import (
     FreePotential,
     IsotropicPotential,
     LinearPotential,

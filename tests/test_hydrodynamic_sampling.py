@@ -5,11 +5,11 @@ import math
 import numpy as np
 import pytest
 
-from fpsolve.curves import MovingBelt
 from fpsolve.errors import NonFinitePathError
-from fpsolve.models import LayDownModel
-from fpsolve.planes import PlaneGrid
-from fpsolve.potentials import PowerPotential, QuadraticPotential
+from fpsolve.grids.plane import PlaneGrid
+from fpsolve.model.curves import MovingBelt
+from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.potentials import PowerPotential, QuadraticPotential
 from fpsolve.reduced.hydrodynamic import HydrodynamicLimit, OrnsteinUhlenbeckLimit
 
 MODEL = LayDownModel(QuadraticPotential(1.2, 0.7), 2.0, MovingBelt(0.1))

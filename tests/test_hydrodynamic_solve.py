@@ -5,13 +5,11 @@ import pytest
 from orders import assert_order, measure_order
 
 import fpsolve as fp
-from fpsolve.curves import MovingBelt
-from fpsolve.grids import PhaseSpaceGrid
-from fpsolve.models import LayDownModel
-from fpsolve.planes import PlaneGrid
-from fpsolve.potentials import (
-    QuadraticPotential,
-)
+from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.grids.plane import PlaneGrid
+from fpsolve.model.curves import MovingBelt
+from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.potentials import QuadraticPotential
 from fpsolve.reduced.hydrodynamic import HydrodynamicLimit, OrnsteinUhlenbeckLimit
 
 MODEL = LayDownModel(QuadraticPotential(1.0, 0.8), 2.0, MovingBelt(0.1))

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from orders import assert_order, measure_order
 
-from fpsolve.curves import MovingBelt
-from fpsolve.models import LayDownModel
-from fpsolve.planes import PlaneGrid
-from fpsolve.potentials import LinearPotential, PowerPotential, QuadraticPotential
+from fpsolve.grids.plane import PlaneGrid
+from fpsolve.model.curves import MovingBelt
+from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.potentials import LinearPotential, PowerPotential, QuadraticPotential
 from fpsolve.reduced.hydrodynamic import HydrodynamicLimit, OrnsteinUhlenbeckLimit
 from fpsolve.reduced.hydrodynamic.spectrum import symmetrised
 

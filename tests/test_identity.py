@@ -12,12 +12,11 @@ import numba
 import numpy as np
 import pytest
 
-from fpsolve.curves import Curve, RotatingNozzle, curve_from_dict, curve_to_dict
-from fpsolve.grids import PhaseSpaceGrid
-from fpsolve.identity import UnidentifiedError, digest_or_none, identity_digest
-from fpsolve.models import LayDownModel
-from fpsolve.paths import DensityLaw, GaussianLaw
-from fpsolve.potentials import (
+from fpsolve._support.identity import UnidentifiedError, digest_or_none, identity_digest
+from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.model.curves import Curve, RotatingNozzle, curve_from_dict, curve_to_dict
+from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.potentials import (
     CallablePotential,
     IsotropicPotential,
     LinearPotential,
@@ -25,6 +24,7 @@ from fpsolve.potentials import (
     potential_from_dict,
     potential_to_dict,
 )
+from fpsolve.paths import DensityLaw, GaussianLaw
 
 FACTOR = 2.0
 GRID = PhaseSpaceGrid(3.0, (4, 4, 4))

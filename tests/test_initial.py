@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 from scipy.special import ive
 
 from fpsolve import initial
-from fpsolve.grids import PhaseSpaceGrid
-from fpsolve.potentials import FreePotential, LinearPotential, QuadraticPotential
+from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.model.potentials import FreePotential, LinearPotential, QuadraticPotential
 
 GRID = PhaseSpaceGrid(half_width=(8.0, 6.0), shape=(48, 36, 32))
 # Summing n cells of one sign: the error is far below n eps.

@@ -8,9 +8,9 @@ import pytest
 import fpsolve as fp
 from fpsolve import initial
 from fpsolve.errors import GridMismatchError
-from fpsolve.grids import PhaseSpaceGrid
-from fpsolve.models import LayDownModel
-from fpsolve.potentials import QuadraticPotential
+from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.potentials import QuadraticPotential
 from fpsolve.reduced.hydrodynamic import HydrodynamicLimit, InitialLayer
 
 GRID = PhaseSpaceGrid(5.0, (40, 40, 16))

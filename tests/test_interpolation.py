@@ -6,7 +6,14 @@ from orders import assert_order, measure_order
 from problems import FreeStreaming, FrozenRotation
 
 from fpsolve._kernels.characteristics import interpolate_at_feet
-from fpsolve.curves import (
+from fpsolve.density.schemes import drift_kick, semi_lagrangian
+from fpsolve.density.schemes.rotation import RotationDiffusion
+from fpsolve.density.schemes.stencils import flux_weights, lagrange_weights
+from fpsolve.density.schemes.translation import Translation
+from fpsolve.density.solve import solve
+from fpsolve.grids.diagnostics import l1_distance
+from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.model.curves import (
     EllipticNozzle,
     FixedBelt,
     MovingBelt,
@@ -14,14 +21,7 @@ from fpsolve.curves import (
     RotatingNozzle,
     TabulatedCurve,
 )
-from fpsolve.diagnostics import l1_distance
-from fpsolve.grids import PhaseSpaceGrid
-from fpsolve.potentials import QuadraticPotential
-from fpsolve.schemes import drift_kick, semi_lagrangian
-from fpsolve.schemes.rotation import RotationDiffusion
-from fpsolve.schemes.stencils import flux_weights, lagrange_weights
-from fpsolve.schemes.translation import Translation
-from fpsolve.solve import solve
+from fpsolve.model.potentials import QuadraticPotential
 
 STOPS = np.linspace(0.0, 2.0, 21)
 CURVES = [

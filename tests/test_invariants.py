@@ -8,7 +8,11 @@ from orders import assert_order, measure_order
 from problems import Equilibrium, asymmetric_start
 
 from fpsolve import initial
-from fpsolve.curves import (
+from fpsolve.density.schemes import drift_kick, semi_lagrangian
+from fpsolve.density.solve import solve
+from fpsolve.grids.diagnostics import l1_distance
+from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.model.curves import (
     EllipticNozzle,
     FixedBelt,
     MovingBelt,
@@ -16,18 +20,14 @@ from fpsolve.curves import (
     RotatingNozzle,
     TabulatedCurve,
 )
-from fpsolve.diagnostics import l1_distance
-from fpsolve.grids import PhaseSpaceGrid
-from fpsolve.models import LayDownModel
-from fpsolve.potentials import (
+from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.potentials import (
     CallablePotential,
     IsotropicPotential,
     LinearPotential,
     PowerPotential,
     QuadraticPotential,
 )
-from fpsolve.schemes import drift_kick, semi_lagrangian
-from fpsolve.solve import solve
 
 SCHEMES = {
     "drift-kick": (drift_kick, {}),

@@ -11,7 +11,10 @@ import xarray as xr
 from solutions import PROVENANCE, relaxing_solution
 
 from fpsolve import io
-from fpsolve.curves import (
+from fpsolve._support import files as atomic
+from fpsolve._support.writing import write_dataset
+from fpsolve.errors import FileFormatError
+from fpsolve.model.curves import (
     EllipticNozzle,
     FixedBelt,
     MovingBelt,
@@ -19,11 +22,8 @@ from fpsolve.curves import (
     RotatingNozzle,
     TabulatedCurve,
 )
-from fpsolve.errors import FileFormatError
-from fpsolve.io import atomic
-from fpsolve.io.writing import write_dataset
-from fpsolve.models import LayDownModel
-from fpsolve.potentials import (
+from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.potentials import (
     CallablePotential,
     FreePotential,
     LinearPotential,

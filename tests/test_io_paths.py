@@ -11,8 +11,8 @@ from solutions import relaxing_solution
 import fpsolve as fp
 from fpsolve import io
 from fpsolve.errors import FileFormatError
-from fpsolve.io.paths import process_equation
 from fpsolve.paths import DensityLaw, EquilibriumLaw, GaussianLaw, PointLaw
+from fpsolve.paths.dataset import process_equation
 from fpsolve.paths.ensemble import Ensemble
 
 SUFFIXES = [".nc", ".zarr"]

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import fpsolve as fp
-from fpsolve.recording import Recorder
+from fpsolve.density.recorder import Recorder
 
 GRID = fp.PhaseSpaceGrid(5.0, (20, 16, 16))
 MODEL = fp.LayDownModel(fp.QuadraticPotential(), 1.0)

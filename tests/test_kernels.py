@@ -19,9 +19,9 @@ from fpsolve._kernels import (
     tridiagonal,
 )
 from fpsolve._kernels.compiling import ParallelKernel
-from fpsolve.grids import PhaseSpaceGrid
-from fpsolve.schemes import drift_kick, semi_lagrangian
-from fpsolve.solve import solve
+from fpsolve.density.schemes import drift_kick, semi_lagrangian
+from fpsolve.density.solve import solve
+from fpsolve.grids.phase_space import PhaseSpaceGrid
 
 MODULES = [characteristics, functionals, moebius, rotation, translation, tridiagonal]
 KERNELS = {

@@ -9,29 +9,29 @@ from matplotlib.figure import Figure
 from scipy.special import ive
 
 from fpsolve import initial, studies
-from fpsolve.curves import MovingBelt
-from fpsolve.grids import PhaseSpaceGrid
-from fpsolve.models import LayDownModel
-from fpsolve.paths import EquilibriumLaw, GaussianLaw
-from fpsolve.planes import PlaneGrid
-from fpsolve.plotting.limits import plot_large_noise
-from fpsolve.potentials import (
+from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.grids.plane import PlaneGrid
+from fpsolve.model.curves import MovingBelt
+from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.potentials import (
     FreePotential,
     IsotropicPotential,
     LinearPotential,
     PowerPotential,
     QuadraticPotential,
 )
+from fpsolve.paths import EquilibriumLaw, GaussianLaw
+from fpsolve.plotting.limits import plot_large_noise
 from fpsolve.reduced.hydrodynamic import HydrodynamicLimit
-from fpsolve.spectral.evolution import spectral_solve
-from fpsolve.spectral.gap import spectral_gap
-from fpsolve.spectral.steady import spectral_steady_state
+from fpsolve.spectral.eigen.gap import spectral_gap
+from fpsolve.spectral.evolution.evolution import spectral_solve
+from fpsolve.spectral.evolution.steady import spectral_steady_state
+from fpsolve.studies.constants.gap_expansion import next_gap_term
+from fpsolve.studies.constants.poincare import poincare_constant
 from fpsolve.studies.limits.balance import balanced_force
 from fpsolve.studies.limits.distances import distances
-from fpsolve.studies.limits.gap_expansion import next_gap_term
 from fpsolve.studies.limits.large_noise import LARGE_NOISE_START, large_noise_limit
 from fpsolve.studies.limits.plane_limit import stationary_limit, transient_limit
-from fpsolve.studies.rates.poincare import poincare_constant
 
 QUADRATIC = QuadraticPotential()
 NOISES = 2.0 ** np.array([1.0, 1.5, 2.0])  # ε = 1/4, 1/8, 1/16

@@ -5,7 +5,7 @@ from command_line import files
 from malformed.cases import assert_said, parametrised
 from malformed.configurations import ABSURD, PATHS_FILES, RUN, RUN_FILES, written
 
-from fpsolve.config import PathsConfig, RunConfig, load_config
+from fpsolve.cli.config import PathsConfig, RunConfig, load_config
 from fpsolve.errors import ConfigurationError, MemoryLimitError
 
 

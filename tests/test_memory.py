@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 from fpsolve import initial
+from fpsolve._support.memory import required_memory
+from fpsolve.density.schemes import drift_kick, semi_lagrangian
+from fpsolve.density.solve import solve
 from fpsolve.errors import MemoryLimitError
-from fpsolve.grids import PhaseSpaceGrid
-from fpsolve.memory import required_memory
-from fpsolve.models import LayDownModel
-from fpsolve.potentials import QuadraticPotential
-from fpsolve.schemes import drift_kick, semi_lagrangian
-from fpsolve.solve import solve
+from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.potentials import QuadraticPotential
 
 MODEL = LayDownModel(QuadraticPotential(), 1.0)
 GRID = PhaseSpaceGrid(6.0, (20, 20, 16))

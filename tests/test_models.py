@@ -10,9 +10,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fpsolve.curves import FixedBelt, MovingBelt, OscillatingNozzle, RotatingNozzle
-from fpsolve.models import LayDownModel
-from fpsolve.potentials import (
+from fpsolve.model.curves import (
+    FixedBelt,
+    MovingBelt,
+    OscillatingNozzle,
+    RotatingNozzle,
+)
+from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.potentials import (
     CallablePotential,
     FreePotential,
     LinearPotential,

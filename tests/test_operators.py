@@ -5,16 +5,16 @@ import pytest
 from orders import assert_order, measure_order
 from problems import AngularHeat
 
-from fpsolve.curves import MovingBelt, RotatingNozzle
-from fpsolve.grids import PhaseSpaceGrid
-from fpsolve.models import LayDownModel
-from fpsolve.potentials import FreePotential, LinearPotential, QuadraticPotential
-from fpsolve.schemes import drift_kick, rotation_table, semi_lagrangian
-from fpsolve.schemes.characteristics import Characteristics
-from fpsolve.schemes.diffusion import ImplicitDiffusion
-from fpsolve.schemes.rotation import RotationDiffusion
-from fpsolve.schemes.stencils import shift_taps
-from fpsolve.schemes.translation import Translation
+from fpsolve.density.schemes import drift_kick, rotation_table, semi_lagrangian
+from fpsolve.density.schemes.characteristics import Characteristics
+from fpsolve.density.schemes.diffusion import ImplicitDiffusion
+from fpsolve.density.schemes.rotation import RotationDiffusion
+from fpsolve.density.schemes.stencils import shift_taps
+from fpsolve.density.schemes.translation import Translation
+from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.model.curves import MovingBelt, RotatingNozzle
+from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.potentials import FreePotential, LinearPotential, QuadraticPotential
 
 GRID = PhaseSpaceGrid((3.0, 2.5), (8, 10, 12))
 MODEL = LayDownModel(QuadraticPotential(1.0, 0.8), 0.7, RotatingNozzle(0.1, 0.5, 1.0))

@@ -7,14 +7,9 @@ import pytest
 
 import fpsolve as fp
 from fpsolve.errors import ToleranceError
-from fpsolve.spectral import (
-    Sector,
-    SpectralGap,
-    optimal,
-    optimal_noise,
-    spectral_gap,
-)
-from fpsolve.spectral.branches import Branch
+from fpsolve.spectral import Sector, SpectralGap, optimal_noise, spectral_gap
+from fpsolve.spectral.eigen import optimal
+from fpsolve.spectral.eigen.branches import Branch
 
 
 @pytest.fixture(scope="module")

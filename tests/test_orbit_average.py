@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from energy_processes import PROCESSES
 
-from fpsolve.potentials import QuadraticPotential
+from fpsolve.model.potentials import QuadraticPotential
 from fpsolve.reduced.energy import EnergyProcess
 
 SHARES = np.array([0.05, 0.3, 0.7, 0.95])

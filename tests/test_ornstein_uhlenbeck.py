@@ -5,10 +5,10 @@ import math
 import numpy as np
 import pytest
 
-from fpsolve.curves import MovingBelt, RotatingNozzle
-from fpsolve.models import LayDownModel
-from fpsolve.planes import PlaneGrid
-from fpsolve.potentials import LinearPotential, QuadraticPotential
+from fpsolve.grids.plane import PlaneGrid
+from fpsolve.model.curves import MovingBelt, RotatingNozzle
+from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.potentials import LinearPotential, QuadraticPotential
 from fpsolve.reduced.hydrodynamic import HydrodynamicLimit, OrnsteinUhlenbeckLimit
 
 MODEL = LayDownModel(QuadraticPotential(1.2, 0.7), 2.0, MovingBelt(0.1))

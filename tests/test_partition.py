@@ -8,9 +8,9 @@ from mixtures import Mixture, random_mixture, two_wells
 from scipy import stats
 
 import fpsolve as fp
+from fpsolve.model.potentials.nodes import gibbs_nodes
+from fpsolve.model.potentials.partition import normalisation_of
 from fpsolve.paths import EquilibriumLaw
-from fpsolve.potentials.nodes import gibbs_nodes
-from fpsolve.potentials.partition import normalisation_of
 
 
 @pytest.mark.parametrize("seed", range(30))

@@ -8,7 +8,7 @@ import pytest
 from energy_processes import NOISE, PROCESSES
 from orders import assert_order, measure_order
 
-from fpsolve.potentials import QuadraticPotential
+from fpsolve.model.potentials import QuadraticPotential
 from fpsolve.reduced.energy import EnergyProcess
 
 QUADRATIC = PROCESSES["quadratic"]

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from fpsolve.errors import GridMismatchError
-from fpsolve.grids import PhaseSpaceGrid
-from fpsolve.planes import PlaneGrid
+from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.grids.plane import PlaneGrid
 
 GRID = PlaneGrid(half_width=(3.0, 2.0), shape=(6, 7))
 

@@ -12,11 +12,11 @@ from PIL import Image
 from solutions import relaxing_solution
 
 from fpsolve import plotting
-from fpsolve.curves import MovingBelt, RotatingNozzle
-from fpsolve.models import LayDownModel
+from fpsolve.model.curves import MovingBelt, RotatingNozzle
+from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.potentials import FreePotential, QuadraticPotential
 from fpsolve.plotting import maps, style
 from fpsolve.plotting.entropy import fitted_rate
-from fpsolve.potentials import FreePotential, QuadraticPotential
 
 
 @pytest.fixture(scope="module")

@@ -8,8 +8,8 @@ import pytest
 import fpsolve as fp
 from fpsolve import initial
 from fpsolve.interop.differences import phase_space_rate, plane_rate
-from fpsolve.potentials import Potential
-from fpsolve.potentials.at_points import gradient_at, value_at
+from fpsolve.model.potentials import Potential
+from fpsolve.model.potentials.at_points import gradient_at, value_at
 
 ODD = fp.PhaseSpaceGrid(3.0, (9, 9, 8))
 EVEN = fp.PhaseSpaceGrid(3.0, (8, 8, 8))

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import dblquad, quad
 
-from fpsolve.potentials import (
+from fpsolve.model.potentials import (
     CallablePotential,
     FreePotential,
     IsotropicPotential,

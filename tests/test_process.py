@@ -8,10 +8,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fpsolve.curves import FixedBelt, MovingBelt
-from fpsolve.models import LayDownModel
-from fpsolve.potentials import QuadraticPotential
-from fpsolve.process import Process
+from fpsolve.model.curves import FixedBelt, MovingBelt
+from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.potentials import QuadraticPotential
+from fpsolve.model.process import Process
 
 PROCESS = Process(
     sigma1=4e-3, sigma2=8e-3, noise=20.0, speed_ratio=0.1, spinning_speed=2.0

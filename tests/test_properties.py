@@ -8,17 +8,17 @@ import strategies as given_
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fpsolve.curves import FixedBelt, MovingBelt
-from fpsolve.diagnostics import l1_distance
+from fpsolve.density.schemes import drift_kick, semi_lagrangian
+from fpsolve.density.solve import solve
 from fpsolve.errors import MassCorrectionError, MassDriftError
-from fpsolve.grids import PhaseSpaceGrid
-from fpsolve.initial import equilibrium
-from fpsolve.models import LayDownModel
-from fpsolve.planes import PlaneGrid
+from fpsolve.grids.diagnostics import l1_distance
+from fpsolve.grids.initial import equilibrium
+from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.grids.plane import PlaneGrid
+from fpsolve.model.curves import FixedBelt, MovingBelt
+from fpsolve.model.laydown import LayDownModel
 from fpsolve.reduced.hydrodynamic import HydrodynamicLimit
-from fpsolve.schemes import drift_kick, semi_lagrangian
-from fpsolve.solve import solve
-from fpsolve.spectral.quadratic import check_model
+from fpsolve.spectral.evolution.quadratic import check_model
 
 N_STEPS = 4
 # A density may leave any of these boxes; here that is no matter.

@@ -14,10 +14,10 @@ from solutions import relaxing_solution
 
 import fpsolve as fp
 from fpsolve import io
-from fpsolve.config import RunConfig, read_config
+from fpsolve.cli.config import RunConfig, read_config
 from fpsolve.errors import ConfigurationError, FileFormatError
-from fpsolve.models import LayDownModel
-from fpsolve.schedule import make_schedule
+from fpsolve.evolution.schedule import make_schedule
+from fpsolve.model.laydown import LayDownModel
 
 PROCESS = {"sigma1": 0.01, "sigma2": 0.01, "noise": 16.0, "speed_ratio": 0.1,
            "spinning_speed": 50.0}  # fmt: skip

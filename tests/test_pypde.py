@@ -13,18 +13,14 @@ from problems import (
 )
 
 from fpsolve import diagnostics
-from fpsolve.curves import MovingBelt, RotatingNozzle
-from fpsolve.grids import PhaseSpaceGrid
-from fpsolve.interop import (
-    FokkerPlanckPDE,
-    HydrodynamicPDE,
-    to_pde_field,
-)
-from fpsolve.models import LayDownModel
-from fpsolve.planes import PlaneGrid
-from fpsolve.potentials import LinearPotential, QuadraticPotential
-from fpsolve.schemes import drift_kick
-from fpsolve.solve import solve
+from fpsolve.density.schemes import drift_kick
+from fpsolve.density.solve import solve
+from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.grids.plane import PlaneGrid
+from fpsolve.interop import FokkerPlanckPDE, HydrodynamicPDE, to_pde_field
+from fpsolve.model.curves import MovingBelt, RotatingNozzle
+from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.potentials import LinearPotential, QuadraticPotential
 
 BELT = LayDownModel(QuadraticPotential(1.0, 0.8), 2.0, MovingBelt(0.1))
 

@@ -5,11 +5,11 @@ import pde
 import pytest
 from problems import asymmetric_start
 
-from fpsolve.curves import MovingBelt, RotatingNozzle
+from fpsolve.grids.plane import PlaneGrid
 from fpsolve.interop import FokkerPlanckPDE, HydrodynamicPDE, to_pde_field
-from fpsolve.models import LayDownModel
-from fpsolve.planes import PlaneGrid
-from fpsolve.potentials import QuadraticPotential
+from fpsolve.model.curves import MovingBelt, RotatingNozzle
+from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.potentials import QuadraticPotential
 
 BELT = LayDownModel(QuadraticPotential(1.0, 0.8), 2.0, MovingBelt(0.1))
 

@@ -5,9 +5,9 @@ import pde
 import pytest
 
 from fpsolve.errors import GridMismatchError
-from fpsolve.grids import PhaseSpaceGrid
+from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.grids.plane import PlaneGrid
 from fpsolve.interop import from_pde_field, to_pde_field
-from fpsolve.planes import PlaneGrid
 
 FULL_TURN = (0.0, 2 * np.pi)
 

@@ -5,13 +5,13 @@ import pde
 import pytest
 from orders import assert_order, measure_order
 
-from fpsolve.curves import MovingBelt
 from fpsolve.errors import DomainTooSmallError
-from fpsolve.grids import PhaseSpaceGrid
+from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.grids.plane import PlaneGrid
 from fpsolve.interop import HydrodynamicPDE, from_pde_field, to_pde_field
-from fpsolve.models import LayDownModel
-from fpsolve.planes import PlaneGrid
-from fpsolve.potentials import LinearPotential, PowerPotential, QuadraticPotential
+from fpsolve.model.curves import MovingBelt
+from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.potentials import LinearPotential, PowerPotential, QuadraticPotential
 from fpsolve.reduced.hydrodynamic import HydrodynamicLimit
 
 MODEL = LayDownModel(QuadraticPotential(1.0, 0.8), 2.0, MovingBelt(0.1))

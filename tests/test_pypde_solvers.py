@@ -8,24 +8,21 @@ import pytest
 from problems import asymmetric_start
 
 from fpsolve import diagnostics
-from fpsolve.curves import RotatingNozzle
+from fpsolve.density.schemes import drift_kick, semi_lagrangian
+from fpsolve.density.solve import Tolerances, solve
 from fpsolve.errors import (
     DomainTooSmallError,
     MassDriftError,
     NegativeDensityError,
     NonFiniteDensityError,
 )
-from fpsolve.grids import PhaseSpaceGrid
-from fpsolve.interop import (
-    FokkerPlanckPDE,
-    to_pde_field,
-)
+from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.grids.plane import PlaneGrid
+from fpsolve.interop import FokkerPlanckPDE, to_pde_field
 from fpsolve.interop.solvers import check_correction, check_density
-from fpsolve.models import LayDownModel
-from fpsolve.planes import PlaneGrid
-from fpsolve.potentials import QuadraticPotential
-from fpsolve.schemes import drift_kick, semi_lagrangian
-from fpsolve.solve import Tolerances, solve
+from fpsolve.model.curves import RotatingNozzle
+from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.potentials import QuadraticPotential
 
 GRID = PhaseSpaceGrid(5.0, (16, 16, 16))
 NOZZLE = LayDownModel(QuadraticPotential(), 1.0, RotatingNozzle(0.1, 0.3, 0.8))

@@ -6,8 +6,10 @@ import pytest
 from PIL import Image
 from problems import asymmetric_start
 
-from fpsolve.curves import MovingBelt
-from fpsolve.grids import PhaseSpaceGrid
+from fpsolve.density.schemes import semi_lagrangian
+from fpsolve.density.solve import solve
+from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.grids.plane import PlaneGrid
 from fpsolve.interop import (
     FokkerPlanckPDE,
     GifMovie,
@@ -17,11 +19,9 @@ from fpsolve.interop import (
     relative_entropy,
     to_pde_field,
 )
-from fpsolve.models import LayDownModel
-from fpsolve.planes import PlaneGrid
-from fpsolve.potentials import FreePotential, QuadraticPotential
-from fpsolve.schemes import semi_lagrangian
-from fpsolve.solve import solve
+from fpsolve.model.curves import MovingBelt
+from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.potentials import FreePotential, QuadraticPotential
 
 GRID = PhaseSpaceGrid(5.0, (16, 16, 16))
 

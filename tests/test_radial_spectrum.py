@@ -10,11 +10,11 @@ from scipy.sparse import csc_array, diags_array, eye_array, kron
 from scipy.sparse.linalg import ArpackNoConvergence, eigs
 
 import fpsolve as fp
-from fpsolve.spectral.essential import asymptotic_slope, essential_threshold
-from fpsolve.spectral.hermite import HermiteDiscretisation
-from fpsolve.spectral.radial import RadialDiscretisation
-from fpsolve.spectral.radial_basis import radial_basis, smooth_in_square
-from fpsolve.spectral.sectors import Sector, Truncation
+from fpsolve.spectral.bases.essential import asymptotic_slope, essential_threshold
+from fpsolve.spectral.bases.hermite import HermiteDiscretisation
+from fpsolve.spectral.bases.radial import RadialDiscretisation
+from fpsolve.spectral.bases.radial_basis import radial_basis, smooth_in_square
+from fpsolve.spectral.bases.sectors import Sector, Truncation
 
 EVEN, ODD, ONE, TWO = Sector(0, 1), Sector(0, -1), Sector(1), Sector(2)
 LINEAR = fp.LinearPotential()

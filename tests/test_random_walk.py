@@ -5,12 +5,12 @@ import pytest
 from orders import assert_order, measure_order
 from problems import PersistentRandomWalk
 
-from fpsolve.curves import RotatingNozzle
-from fpsolve.grids import PhaseSpaceGrid
-from fpsolve.models import LayDownModel
-from fpsolve.potentials import FreePotential
-from fpsolve.schemes import drift_kick, semi_lagrangian
-from fpsolve.solve import solve
+from fpsolve.density.schemes import drift_kick, semi_lagrangian
+from fpsolve.density.solve import solve
+from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.model.curves import RotatingNozzle
+from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.potentials import FreePotential
 
 # Nothing reaches the boundary, where the walk would come back on the other side: the
 # mass beyond 8 from a Gaussian of variance 1/2 carried by 2 is e^{−36}, and the ripples

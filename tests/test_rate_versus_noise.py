@@ -6,11 +6,19 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from fpsolve.curves import MovingBelt
+from fpsolve.density.schemes import drift_kick
+from fpsolve.density.solve import solve
 from fpsolve.errors import RunInterrupted, ToleranceError
-from fpsolve.grids import PhaseSpaceGrid
-from fpsolve.initial import from_function
-from fpsolve.models import LayDownModel
+from fpsolve.grids.initial import from_function
+from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.model.curves import MovingBelt
+from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.potentials import (
+    FreePotential,
+    LinearPotential,
+    PowerPotential,
+    QuadraticPotential,
+)
 from fpsolve.paths import EquilibriumLaw
 from fpsolve.plotting.rates import (
     plot_asymptotic_variance,
@@ -18,15 +26,7 @@ from fpsolve.plotting.rates import (
     plot_rates,
     plot_spectrum,
 )
-from fpsolve.potentials import (
-    FreePotential,
-    LinearPotential,
-    PowerPotential,
-    QuadraticPotential,
-)
-from fpsolve.schemes import drift_kick
-from fpsolve.solve import solve
-from fpsolve.spectral.spectrum import spectrum
+from fpsolve.spectral.eigen.spectrum import spectrum
 from fpsolve.studies.observables import default_observables
 from fpsolve.studies.rates.cases import PARTS
 from fpsolve.studies.rates.dataset import spectrum_dataset

@@ -7,12 +7,12 @@ import pytest
 from orders import assert_order, measure_order
 
 import fpsolve as fp
-from fpsolve.curves import MovingBelt
 from fpsolve.errors import GridMismatchError
-from fpsolve.grids import PhaseSpaceGrid
-from fpsolve.models import LayDownModel
-from fpsolve.planes import PlaneGrid
-from fpsolve.potentials import LinearPotential, PowerPotential, QuadraticPotential
+from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.grids.plane import PlaneGrid
+from fpsolve.model.curves import MovingBelt
+from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.potentials import LinearPotential, PowerPotential, QuadraticPotential
 from fpsolve.reduced.hydrodynamic import HydrodynamicLimit, OrnsteinUhlenbeckLimit
 from fpsolve.reduced.hydrodynamic.reconstruction import balanced_gradient
 

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from fpsolve.curves import MovingBelt
 from fpsolve.errors import RunInterrupted
-from fpsolve.models import LayDownModel
-from fpsolve.planes import PlaneGrid
-from fpsolve.potentials import QuadraticPotential
+from fpsolve.grids.plane import PlaneGrid
+from fpsolve.model.curves import MovingBelt
+from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.potentials import QuadraticPotential
 from fpsolve.reduced.energy import EnergyProcess
 from fpsolve.reduced.hydrodynamic import HydrodynamicLimit
 

@@ -6,9 +6,9 @@ from orders import assert_order, measure_order
 from scipy.linalg import expm
 from scipy.sparse import csc_array
 
+from fpsolve.evolution.schedule import make_schedule
 from fpsolve.reduced.entropy import Exchange, relative_entropy_of
-from fpsolve.reduced.evolution import relax, relax_extrapolated
-from fpsolve.schedule import make_schedule
+from fpsolve.reduced.relaxation import relax, relax_extrapolated
 
 EPS = np.finfo(float).eps
 METHODS = ("backward_euler", "sdirk2")

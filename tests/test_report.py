@@ -14,8 +14,8 @@ from solutions import relaxing_solution
 
 import fpsolve as fp
 from fpsolve.errors import FileFormatError
-from fpsolve.report.blocks import Figure
-from fpsolve.report.equations import mathml
+from fpsolve.pages.blocks import Figure
+from fpsolve.pages.equations import mathml
 
 
 @pytest.fixture(scope="module")
@@ -41,7 +41,7 @@ def page_of(tmp_path, monkeypatch):
                    "limits"):  # fmt: skip
         # By its module: `fpsolve.report` is the function.
         monkeypatch.setattr(
-            importlib.import_module(f"fpsolve.report.{module}"),
+            importlib.import_module(f"fpsolve.pages.{module}"),
             "embedded",
             lambda draw, caption, alt: Figure("data:,", 100, caption, alt),
         )
@@ -398,7 +398,7 @@ def test_wrong_arguments_are_named(tmp_path):
 def test_a_check_comes_back_from_its_dataset():
     from result_files import cross_check
 
-    from fpsolve.studies.dataset import from_xarray
+    from fpsolve.studies.agreement.dataset import from_xarray
 
     check = cross_check()
     back = from_xarray(check.to_xarray())

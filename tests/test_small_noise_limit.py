@@ -9,10 +9,10 @@ from scipy import stats
 
 from fpsolve import initial, studies
 from fpsolve.errors import MemoryLimitError, RunInterrupted
-from fpsolve.grids import PhaseSpaceGrid
+from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.model.potentials import FreePotential, LinearPotential, QuadraticPotential
 from fpsolve.paths import GaussianLaw, PointLaw
 from fpsolve.plotting.small_noise import plot_small_noise, plot_small_noise_spectrum
-from fpsolve.potentials import FreePotential, LinearPotential, QuadraticPotential
 from fpsolve.reduced.energy import EnergyProcess
 from fpsolve.studies.limits import energy_sectors as spectrum_module
 from fpsolve.studies.limits.energy_law import (

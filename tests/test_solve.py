@@ -6,19 +6,19 @@ import pytest
 from problems import DecayingCirculation
 
 from fpsolve import initial
-from fpsolve.diagnostics import (
+from fpsolve.density.schemes import drift_kick, semi_lagrangian
+from fpsolve.density.solve import solve
+from fpsolve.evolution.schedule import make_schedule
+from fpsolve.grids.diagnostics import (
     l1_distance,
     mass,
     moments,
     negative_mass,
     relative_entropy,
 )
-from fpsolve.grids import PhaseSpaceGrid
-from fpsolve.models import LayDownModel
-from fpsolve.potentials import FreePotential, QuadraticPotential
-from fpsolve.schedule import make_schedule
-from fpsolve.schemes import drift_kick, semi_lagrangian
-from fpsolve.solve import solve
+from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.potentials import FreePotential, QuadraticPotential
 
 MODEL = LayDownModel(QuadraticPotential(), 1.0)
 GRID = PhaseSpaceGrid(6.0, (20, 20, 16))

@@ -11,11 +11,11 @@ from hypothesis import strategies as st
 import fpsolve as fp
 from fpsolve.errors import MemoryLimitError, ToleranceError
 from fpsolve.spectral import Sector, SpectralGap, spectral_gap, spectrum
-from fpsolve.spectral.bases import discretisation_for
-from fpsolve.spectral.hermite import HermiteDiscretisation
-from fpsolve.spectral.sectors import Truncation
-from fpsolve.spectral.survey import Scale, survey
-from fpsolve.spectral.tensor import TensorDiscretisation
+from fpsolve.spectral.bases.choice import discretisation_for
+from fpsolve.spectral.bases.hermite import HermiteDiscretisation
+from fpsolve.spectral.bases.sectors import Truncation
+from fpsolve.spectral.bases.tensor import TensorDiscretisation
+from fpsolve.spectral.eigen.survey import Scale, survey
 
 ODD, EVEN, ONE = Sector(0, -1), Sector(0, 1), Sector(1)
 

@@ -7,9 +7,9 @@ import pytest
 
 import fpsolve as fp
 from fpsolve.spectral import Sector, spectrum
-from fpsolve.spectral.hermite import HermiteDiscretisation
-from fpsolve.spectral.sectors import Truncation
-from fpsolve.spectral.tensor import TensorDiscretisation
+from fpsolve.spectral.bases.hermite import HermiteDiscretisation
+from fpsolve.spectral.bases.sectors import Truncation
+from fpsolve.spectral.bases.tensor import TensorDiscretisation
 
 ODD, EVEN, ONE = Sector(0, -1), Sector(0, 1), Sector(1)
 

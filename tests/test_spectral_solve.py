@@ -9,14 +9,14 @@ from problems import DecayingCirculation, asymmetric_start
 import fpsolve as fp
 from fpsolve._kernels import ladder
 from fpsolve.errors import MemoryLimitError, ToleranceError
-from fpsolve.functionals import MOMENTS
+from fpsolve.grids.row_sums import MOMENTS
 from fpsolve.paths import EquilibriumLaw, GaussianLaw, PointLaw
-from fpsolve.spectral import quadrature
-from fpsolve.spectral.evolution import spectral_solve
-from fpsolve.spectral.expansion import Expansion
-from fpsolve.spectral.exponential import ForwardOperator
-from fpsolve.spectral.projection import DensityStart, GaussianStart
-from fpsolve.spectral.steady import (
+from fpsolve.spectral.evolution import quadrature
+from fpsolve.spectral.evolution.evolution import spectral_solve
+from fpsolve.spectral.evolution.expansion import Expansion
+from fpsolve.spectral.evolution.exponential import ForwardOperator
+from fpsolve.spectral.evolution.projection import DensityStart, GaussianStart
+from fpsolve.spectral.evolution.steady import (
     Unknowns,
     forward_matrix,
     spectral_steady_state,

@@ -7,14 +7,18 @@ import pytest
 from orders import assert_order, measure_order
 from problems import AngularHeat, DecayingCirculation, asymmetric_start
 
-from fpsolve.curves import FixedBelt, MovingBelt, RotatingNozzle
-from fpsolve.diagnostics import l1_distance
-from fpsolve.grids import PhaseSpaceGrid
-from fpsolve.models import LayDownModel
-from fpsolve.potentials import IsotropicPotential, PowerPotential, QuadraticPotential
-from fpsolve.schemes import drift_kick, semi_lagrangian
-from fpsolve.schemes.diffusion import ImplicitDiffusion
-from fpsolve.solve import solve
+from fpsolve.density.schemes import drift_kick, semi_lagrangian
+from fpsolve.density.schemes.diffusion import ImplicitDiffusion
+from fpsolve.density.solve import solve
+from fpsolve.grids.diagnostics import l1_distance
+from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.model.curves import FixedBelt, MovingBelt, RotatingNozzle
+from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.potentials import (
+    IsotropicPotential,
+    PowerPotential,
+    QuadraticPotential,
+)
 
 # Boxes beyond which e^{−B} < 1e−10, and interpolation of order 14, so that what is
 # left of the error comes from ds.

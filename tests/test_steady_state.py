@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 import fpsolve as fp
+from fpsolve.density.stationary.coarser import carried, coarser_grid
+from fpsolve.density.stationary.requirements import check_stationary
 from fpsolve.errors import ToleranceError
-from fpsolve.stationary.coarser import carried, coarser_grid
-from fpsolve.stationary.requirements import check_stationary
 
 GRID = fp.PhaseSpaceGrid(5.5, (44, 44, 32))
 

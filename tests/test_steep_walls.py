@@ -10,8 +10,8 @@ from test_operators import applied, kicked_by_full_matrices
 
 import fpsolve as fp
 from fpsolve._kernels import paths as kernels
-from fpsolve.schemes.rotation import RotationDiffusion
-from fpsolve.schemes.rotation_table import SAME_STRENGTH, rotation_table
+from fpsolve.density.schemes.rotation import RotationDiffusion
+from fpsolve.density.schemes.rotation_table import SAME_STRENGTH, rotation_table
 
 WALL = fp.PowerPotential(60.0)
 # A quadratic potential within a wall that begins at r = 2.5.

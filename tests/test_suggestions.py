@@ -9,7 +9,7 @@ from mixtures import two_wells
 
 import fpsolve as fp
 from fpsolve import suggestions
-from fpsolve.config import RunConfig
+from fpsolve.cli.config import RunConfig
 
 
 def model(noise=1.0, potential=None, curve=None):

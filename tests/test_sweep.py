@@ -21,10 +21,14 @@ from sweep_functions import (
 )
 
 from fpsolve.errors import RunInterrupted
-from fpsolve.potentials import IsotropicPotential, LinearPotential, QuadraticPotential
+from fpsolve.model.potentials import (
+    IsotropicPotential,
+    LinearPotential,
+    QuadraticPotential,
+)
 from fpsolve.studies.rates.cases import rate_case
-from fpsolve.studies.rates.store import CaseStore
-from fpsolve.studies.rates.sweep import sweep
+from fpsolve.studies.sweeps.store import CaseStore
+from fpsolve.studies.sweeps.sweep import sweep
 
 CASES = [{"x": x} for x in (1, 2, 3)]
 GAPS = [

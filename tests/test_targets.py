@@ -12,9 +12,9 @@ import result_files
 
 import fpsolve as fp
 from fpsolve import plotting
-from fpsolve.io import staging
-from fpsolve.io.atomic import atomic_path
-from fpsolve.io.writing import write_dataset
+from fpsolve._support import staging
+from fpsolve._support.files import atomic_path
+from fpsolve._support.writing import write_dataset
 
 
 @pytest.fixture
@@ -71,7 +71,7 @@ def test_a_socket_is_refused_and_stays(sock):
 
 def test_a_device_is_refused(tmp_path, monkeypatch):
     # None is made here: only root could, and it would be one of this machine.
-    from fpsolve.io import targets
+    from fpsolve._support import targets
 
     path = tmp_path / "target.nc"
     path.write_text("")

@@ -10,10 +10,10 @@ import pytest
 from threadpoolctl import ThreadpoolController
 
 import fpsolve as fp
-from fpsolve._blas import one_blas_thread
-from fpsolve.schemes import drift_kick, semi_lagrangian
-from fpsolve.spectral.radial_basis import radial_basis
-from fpsolve.studies.rates.recorded_warnings import recorded_warnings
+from fpsolve._support.blas import one_blas_thread
+from fpsolve.density.schemes import drift_kick, semi_lagrangian
+from fpsolve.spectral.bases.radial_basis import radial_basis
+from fpsolve.studies.sweeps.recorded_warnings import recorded_warnings
 
 GRID = fp.PhaseSpaceGrid(5.0, (16, 16, 8))
 N_THREADS = 4

@@ -19,7 +19,11 @@ from reporting import Report, save_figure
 
 import fpsolve as fp
 from fpsolve.plotting.ergodicity import plot_ergodic_averages
-from fpsolve.studies.ergodicity import ErgodicFit, ergodic_averages, fit_ergodic_error
+from fpsolve.studies.ergodicity.averages import (
+    ErgodicFit,
+    ergodic_averages,
+    fit_ergodic_error,
+)
 
 SEED = 20080611
 # Poincaré constant c of ½∫|∇f|²e^{−B} for B = |ξ|²/2, see theorem 3.3.

@@ -17,7 +17,7 @@ from reporting import Report, restricted
 
 import fpsolve as fp
 from fpsolve import suggestions
-from fpsolve.potentials.nodes import gibbs_nodes
+from fpsolve.model.potentials.nodes import gibbs_nodes
 
 
 @dataclass(frozen=True)

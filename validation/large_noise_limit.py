@@ -28,11 +28,14 @@ from reporting import Report, save_figure  # noqa: E402
 import fpsolve as fp  # noqa: E402
 from fpsolve.paths import GaussianLaw  # noqa: E402
 from fpsolve.plotting import plot_large_noise  # noqa: E402
+from fpsolve.studies.constants.gap_expansion import next_gap_term  # noqa: E402
+from fpsolve.studies.constants.poincare import poincare_constant  # noqa: E402
 from fpsolve.studies.limits.distances import distances  # noqa: E402
-from fpsolve.studies.limits.gap_expansion import next_gap_term  # noqa: E402
 from fpsolve.studies.limits.large_noise import LARGE_NOISE_START  # noqa: E402
-from fpsolve.studies.limits.plane_limit import stationary_limit, transient_limit  # noqa: E402
-from fpsolve.studies.rates.poincare import poincare_constant  # noqa: E402
+from fpsolve.studies.limits.plane_limit import (
+    stationary_limit,
+    transient_limit,
+)  # noqa: E402
 
 HALVINGS = 2.0 ** np.array([1.0, 1.5, 2.0, 2.5])  # ε = 1/4 … 1/32
 SLOW_LENGTH, PULL = 1.25, 0.5

@@ -22,8 +22,11 @@ from scipy import stats
 import fpsolve as fp
 from fpsolve.paths import PointLaw, sample_paths
 from fpsolve.studies import compare
-from fpsolve.studies.goodness_of_fit import chi_square, z_score
-from fpsolve.studies.partition import equal_probability_bins, equal_probability_boxes
+from fpsolve.studies.agreement.goodness_of_fit import chi_square, z_score
+from fpsolve.studies.agreement.partition import (
+    equal_probability_bins,
+    equal_probability_boxes,
+)
 
 FALSE_ALARM = 1e-3
 SEED = 20080611

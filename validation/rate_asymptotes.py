@@ -13,9 +13,9 @@ import argparse
 from reporting import Report
 
 import fpsolve as fp
-from fpsolve.spectral.gap import spectral_gap
+from fpsolve.spectral.eigen.gap import spectral_gap
+from fpsolve.studies.constants.poincare import poincare_constant
 from fpsolve.studies.rates.bounds import averaging_bound, hypocoercive_bound
-from fpsolve.studies.rates.poincare import poincare_constant
 
 QUADRATIC, LINEAR = fp.QuadraticPotential(), fp.LinearPotential()
 # Noises below the first crossing, and one beyond it.

@@ -13,8 +13,8 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from fpsolve.io.atomic import atomic_path
-from fpsolve.provenance import versions
+from fpsolve._support.files import atomic_path
+from fpsolve._support.provenance import versions
 
 RESULTS = Path(__file__).parent / "results"
 COMPARISONS = {"<": operator.lt, "<=": operator.le, ">": operator.gt}

@@ -16,11 +16,11 @@ import numpy as np
 from reporting import Report
 
 import fpsolve as fp
-from fpsolve.functionals import MOMENTS
+from fpsolve.grids.row_sums import MOMENTS
 from fpsolve.paths import GaussianLaw
-from fpsolve.spectral.evolution import spectral_solve
-from fpsolve.spectral.solution import SpectralSolution
-from fpsolve.spectral.steady import spectral_steady_state
+from fpsolve.spectral.evolution.evolution import spectral_solve
+from fpsolve.spectral.evolution.solution import SpectralSolution
+from fpsolve.spectral.evolution.steady import spectral_steady_state
 
 SCHEMES = {
     "drift_kick": lambda m, g: fp.drift_kick(

@@ -21,8 +21,8 @@ import numpy as np
 from reporting import Report, restricted
 
 import fpsolve as fp
+from fpsolve.density.stationary.start import concentration_of
 from fpsolve.errors import ToleranceError
-from fpsolve.stationary.start import concentration_of
 
 DEFAULT = 1e-4
 # A reference is one if its own error is below this share of what it judges.

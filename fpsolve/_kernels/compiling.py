@@ -5,7 +5,7 @@ from functools import wraps
 
 import numba
 
-from fpsolve._threads import parallel_region
+from fpsolve._kernels.threads import parallel_region
 
 __all__ = ["ParallelKernel", "kernels_are_kept", "njit"]
 

@@ -51,7 +51,7 @@ app.command(epilog="Example: fpsolve info")(info)
 
 def _show_version(wanted: bool) -> None:
     if wanted:
-        from fpsolve.provenance import versions
+        from fpsolve._support.provenance import versions
 
         typer.echo(versions()["fpsolve"])
         raise typer.Exit

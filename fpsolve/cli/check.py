@@ -13,7 +13,7 @@ from fpsolve.cli.errors import FAILED, reported_errors
 from fpsolve.cli.run import Config, Example, NoFigures, Out, Threads
 
 if TYPE_CHECKING:
-    from fpsolve.config import Problem
+    from fpsolve.cli.config import Problem
     from fpsolve.studies import CrossCheck
 
 __all__ = ["check"]
@@ -60,7 +60,7 @@ def check(
     seen. Writes the numbers and a figure. The exit code is 1 if they disagree.
     """
     with reported_errors():
-        from fpsolve.io.atomic import check_folder
+        from fpsolve._support.files import check_folder
 
         check_folder(out, "--out")
         from fpsolve.cli.run import read_config, set_threads
@@ -95,7 +95,7 @@ def print_check(check: CrossCheck) -> None:
     from rich.console import Console
     from rich.table import Table
 
-    from fpsolve.report.cross_check import HEADINGS, summary_row
+    from fpsolve.pages.cross_check import HEADINGS, summary_row
 
     console = Console(highlight=False, markup=False)
     table = Table(box=box.SIMPLE_HEAD)
@@ -146,8 +146,8 @@ def _write(
     check: CrossCheck, name: str, out: Path, used: dict[str, str], figures: bool
 ) -> None:
     """Write verdict and tests as JSON, all numbers as netCDF, and the figure."""
-    from fpsolve.io.atomic import atomic_path, made_folder
-    from fpsolve.io.writing import write_dataset
+    from fpsolve._support.files import atomic_path, made_folder
+    from fpsolve._support.writing import write_dataset
 
     made_folder(out, "--out")
     stem = f"{name}-check"
@@ -163,7 +163,7 @@ def _write(
 
 
 def _draw(check: CrossCheck, path: Path) -> Path:
-    from fpsolve.io.atomic import atomic_path
+    from fpsolve._support.files import atomic_path
     from fpsolve.plotting.comparison import plot_cross_check
     from fpsolve.plotting.style import RESOLUTION, paper_style
 

@@ -11,7 +11,7 @@ from fpsolve.cli.errors import FAILED, reported_errors
 from fpsolve.cli.run import NoFigures
 
 if TYPE_CHECKING:
-    from fpsolve.comparisons import Comparison, Difference
+    from fpsolve.results.compare import Comparison, Difference
 
 __all__ = ["compare", "print_comparison"]
 
@@ -50,10 +50,10 @@ def compare(
     tolerance, and 1 if they are not.
     """
     with reported_errors():
-        from fpsolve.comparisons import compare as compare_results
+        from fpsolve.results.compare import compare as compare_results
 
         if tolerance is not None:
-            from fpsolve._checks import check_positive
+            from fpsolve._support.checks import check_positive
 
             check_positive("--tolerance", tolerance)
         found = compare_results(a, b)
@@ -73,7 +73,7 @@ def print_comparison(comparison: Comparison) -> None:
     from rich.console import Console
     from rich.table import Table
 
-    from fpsolve.comparisons.wording import sections, verdict
+    from fpsolve.results.compare.wording import sections, verdict
 
     console = Console(highlight=False, markup=False)
     a, b = comparison.names
@@ -98,7 +98,7 @@ def print_comparison(comparison: Comparison) -> None:
 
 
 def _row(one: Difference) -> tuple[str, ...]:
-    from fpsolve.comparisons.wording import place_text
+    from fpsolve.results.compare.wording import place_text
 
     units = " σ" if one.statistical else ""
     errors = "" if one.in_errors is None else f"{one.in_errors:.2g}{units}"
@@ -107,7 +107,7 @@ def _row(one: Difference) -> tuple[str, ...]:
 
 
 def _draw(comparison: Comparison, a: Path, b: Path, folder: Path) -> Path:
-    from fpsolve.io.atomic import atomic_path, made_folder
+    from fpsolve._support.files import atomic_path, made_folder
     from fpsolve.plotting.differences import plot_comparison
     from fpsolve.plotting.style import RESOLUTION, paper_style
 

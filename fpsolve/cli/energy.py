@@ -79,12 +79,12 @@ def energy(
     G = r exp(-B(r)) sin β, β the angle between fibre and radius.
     """
     with reported_errors():
-        from fpsolve.io.atomic import check_folder
+        from fpsolve._support.files import check_folder
 
         check_folder(out, "--out")
         from fpsolve.cli.writing import check_outputs
-        from fpsolve.io.energy import tables_dataset
         from fpsolve.reduced.energy import EnergyProcess
+        from fpsolve.reduced.energy.dataset import tables_dataset
 
         check_outputs(out, "energy.nc", *(f"energy-{name}.png" for name in _FIGURES))
         chosen = make_potential(potential, sigma1, sigma2, slope, exponent)
@@ -115,7 +115,7 @@ def _print(process: EnergyProcess, tables: xr.Dataset) -> None:
     from rich.console import Console
     from rich.table import Table
 
-    from fpsolve.report.energy import COEFFICIENTS
+    from fpsolve.pages.energy import COEFFICIENTS
 
     console = Console(highlight=False, markup=False)
     console.print(
@@ -140,8 +140,8 @@ def _print(process: EnergyProcess, tables: xr.Dataset) -> None:
 def _write(
     process: EnergyProcess, tables: xr.Dataset, out: Path, figures: bool
 ) -> None:
-    from fpsolve.io.atomic import made_folder
-    from fpsolve.io.writing import write_dataset
+    from fpsolve._support.files import made_folder
+    from fpsolve._support.writing import write_dataset
 
     made_folder(out, "--out")
     typer.echo(write_dataset(tables, out / "energy.nc"))
@@ -150,7 +150,7 @@ def _write(
 
 
 def _draw(process: EnergyProcess, out: Path) -> None:
-    from fpsolve.io.atomic import atomic_path
+    from fpsolve._support.files import atomic_path
     from fpsolve.plotting import energy as plotting
     from fpsolve.plotting.style import RESOLUTION, paper_style
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from fpsolve.cli.plan import units_text, with_options
 
 if TYPE_CHECKING:
-    from fpsolve.config import PathsConfig, PathsProblem
+    from fpsolve.cli.config import PathsConfig, PathsProblem
     from fpsolve.paths import Paths
 
 __all__ = ["print_moments", "print_paths_plan"]
@@ -30,7 +30,7 @@ def print_paths_plan(
 def _plan(
     config: PathsConfig, problem: PathsProblem, out: Path, seed_from: str
 ) -> list[tuple[str, str]]:
-    from fpsolve.io.paths import process_equation
+    from fpsolve.paths.dataset import process_equation
 
     arguments = problem.arguments
     lines = [("equation", process_equation(problem.model))]
@@ -68,7 +68,7 @@ def print_moments(paths: Paths) -> None:
     from rich.console import Console
     from rich.table import Table
 
-    from fpsolve.report.paths import MOMENTS, moment_rows
+    from fpsolve.pages.paths import MOMENTS, moment_rows
 
     console = Console(highlight=False, markup=False)
     table = Table(box=box.SIMPLE_HEAD)

@@ -16,7 +16,7 @@ def info() -> None:
     with reported_errors():
         from rich.console import Console
 
-        from fpsolve.provenance import versions
+        from fpsolve._support.provenance import versions
 
         rows = {**versions(), "threads": _threads(), "compile cache": _cache()}
         width = max(map(len, rows))

@@ -25,7 +25,7 @@ from fpsolve.cli.run import NoFigures, Out
 if TYPE_CHECKING:
     import xarray as xr
 
-    from fpsolve.potentials import Potential
+    from fpsolve.model.potentials import Potential
 
 __all__ = ["limits"]
 
@@ -82,8 +82,8 @@ def limits(
     was stopped.
     """
     with reported_errors():
+        from fpsolve._support.files import check_folder
         from fpsolve.cli.writing import check_outputs
-        from fpsolve.io.atomic import check_folder
 
         check_folder(out, "--out")
         chosen = _chosen(which, noise)
@@ -155,7 +155,7 @@ def _print(dataset: xr.Dataset, name: str) -> None:
     from rich.console import Console
     from rich.table import Table
 
-    from fpsolve.report.limits import large_rows, small_rows
+    from fpsolve.pages.limits import large_rows, small_rows
 
     table = Table(box=box.SIMPLE_HEAD, title=f"{name}, B = {dataset.attrs['formula']}")
     rows = large_rows(dataset) if name == LARGE else small_rows(dataset)
@@ -175,8 +175,8 @@ def _print(dataset: xr.Dataset, name: str) -> None:
 
 
 def _write(dataset: xr.Dataset, name: str, out: Path, suffix: str = "") -> Path:
-    from fpsolve.io.atomic import made_folder
-    from fpsolve.io.writing import write_dataset
+    from fpsolve._support.files import made_folder
+    from fpsolve._support.writing import write_dataset
 
     made_folder(out, "--out")
     kind = json.loads(dataset.attrs["potential"])["kind"]

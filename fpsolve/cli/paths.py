@@ -11,7 +11,7 @@ from fpsolve.cli.errors import FAILED, INTERRUPTED, fail, reported_errors
 from fpsolve.cli.run import NoFigures, Out, Threads
 
 if TYPE_CHECKING:
-    from fpsolve.config import PathsConfig
+    from fpsolve.cli.config import PathsConfig
     from fpsolve.paths import Paths
 
 __all__ = ["paths"]
@@ -51,7 +51,7 @@ def paths(
     stops the sampling and writes what was finished until then.
     """
     with reported_errors():
-        from fpsolve.io.atomic import check_folder
+        from fpsolve._support.files import check_folder
 
         check_folder(out, "--out")
         from fpsolve.cli.run import set_threads
@@ -67,7 +67,7 @@ def paths(
 
 
 def _read(config: Path | None) -> PathsConfig:
-    from fpsolve.config import PATHS_EXAMPLE, PathsConfig, example_path, load_config
+    from fpsolve.cli.config import PATHS_EXAMPLE, PathsConfig, example_path, load_config
 
     path = example_path(PATHS_EXAMPLE) if config is None else config
     return load_config(path, PathsConfig)

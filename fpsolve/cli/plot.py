@@ -42,11 +42,11 @@ def plot(
     """Draw the figures of a result, or a movie."""
     with reported_errors():
         from fpsolve import plotting
-        from fpsolve.io import load
-        from fpsolve.io.atomic import check_folder
-        from fpsolve.io.dataset import kind_of
+        from fpsolve._support.files import check_folder
+        from fpsolve.density.solution import Solution
         from fpsolve.plotting.movie import check_movie
-        from fpsolve.solution import Solution
+        from fpsolve.results import load
+        from fpsolve.results.kinds import kind_of
 
         if out is not None:
             check_folder(out, "--out")

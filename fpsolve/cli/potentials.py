@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
-    from fpsolve.potentials import Potential
+    from fpsolve.model.potentials import Potential
 
 __all__ = [
     "Exponent",
@@ -40,7 +40,7 @@ def make_potential(
     kind: str, sigma1: float, sigma2: float | None, slope: float, exponent: float
 ) -> Potential:
     """Return the potential of a kind with the parameters that belong to it."""
-    from fpsolve.potentials import (
+    from fpsolve.model.potentials import (
         FreePotential,
         LinearPotential,
         PowerPotential,

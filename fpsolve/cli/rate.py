@@ -25,7 +25,7 @@ from fpsolve.cli.run import NoFigures, Out
 if TYPE_CHECKING:
     import xarray as xr
 
-    from fpsolve.potentials import Potential
+    from fpsolve.model.potentials import Potential
 
 __all__ = ["case_bar", "rate", "save_figure"]
 
@@ -105,7 +105,7 @@ def rate(
     OUT/rate-cases, so that the same command goes on where it was stopped.
     """
     with reported_errors():
-        from fpsolve.io.atomic import check_folder
+        from fpsolve._support.files import check_folder
 
         check_folder(out, "--out")
         from fpsolve.cli.writing import check_outputs
@@ -149,7 +149,7 @@ def print_rates(dataset: xr.Dataset) -> None:
     from rich.console import Console
     from rich.table import Table
 
-    from fpsolve.report.rates import rate_columns
+    from fpsolve.pages.rates import rate_columns
 
     console = Console(highlight=False, markup=False)
     table = Table(box=box.SIMPLE_HEAD, title=f"B = {dataset.attrs['formula']}")
@@ -170,7 +170,7 @@ def _default_noises(quick: bool) -> list[float]:
 
 def _parts_for(potential: Potential, wanted: list[str] | None) -> list[str] | None:
     """The parts asked for, without the one that only quadratic potentials have."""
-    from fpsolve.potentials import QuadraticPotential
+    from fpsolve.model.potentials import QuadraticPotential
 
     if wanted is None or isinstance(potential, QuadraticPotential):
         return wanted
@@ -219,8 +219,8 @@ def case_bar(title: str) -> Iterator[Callable[[int, int, Any], None]]:
 def _write(dataset: xr.Dataset, out: Path, suffix: str = "") -> Path:
     import json
 
-    from fpsolve.io.atomic import made_folder
-    from fpsolve.io.writing import write_dataset
+    from fpsolve._support.files import made_folder
+    from fpsolve._support.writing import write_dataset
 
     made_folder(out, "--out")
     kind = json.loads(dataset.attrs["potential"])["kind"]
@@ -249,7 +249,7 @@ def _draw(studies: list[xr.Dataset], out: Path) -> None:
 
 def save_figure(figure: Any, path: Path) -> None:
     """Write a figure as PNG, whole or not at all, and print where it is."""
-    from fpsolve.io.atomic import atomic_path
+    from fpsolve._support.files import atomic_path
     from fpsolve.plotting.style import RESOLUTION, paper_style
 
     with paper_style(), atomic_path(path) as draft:

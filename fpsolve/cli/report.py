@@ -42,8 +42,8 @@ def report(files: Files, out: Out = None, title: Title = None) -> None:
     is written unless every file can be read.
     """
     with reported_errors():
-        from fpsolve.report import report as write_report
-        from fpsolve.report.page import report_text
+        from fpsolve.pages import report as write_report
+        from fpsolve.pages.page import report_text
 
         if out == _STANDARD_OUTPUT:
             typer.echo(report_text(files, title=title), nl=False)

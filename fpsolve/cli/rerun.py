@@ -16,7 +16,7 @@ from fpsolve.cli.run import Threads
 if TYPE_CHECKING:
     import xarray as xr
 
-    from fpsolve.comparisons import Comparison
+    from fpsolve.results.compare import Comparison
 
 __all__ = ["rerun"]
 
@@ -50,10 +50,10 @@ def rerun(
     versions; then those are named. Otherwise it is 1.
     """
     with reported_errors():
+        from fpsolve._support.files import check_folder
         from fpsolve.cli.run import set_threads
         from fpsolve.cli.writing import check_outputs
-        from fpsolve.comparisons.reading import dataset_of, kind_of_dataset
-        from fpsolve.io.atomic import check_folder
+        from fpsolve.results.compare.reading import dataset_of, kind_of_dataset
 
         check_folder(out, "--out")
         old = dataset_of(file, "FILE")
@@ -83,7 +83,7 @@ def _target(file: Path, out: Path, status: str) -> Path:
 
 
 def _announce(old: xr.Dataset, kind: str, status: str) -> None:
-    from fpsolve.comparisons.reading import KINDS
+    from fpsolve.results.compare.reading import KINDS
 
     about = old.attrs.get("command") or old.attrs.get("equation") or ""
     typer.echo(f"repeating {KINDS[kind]}: {about}".rstrip(": "))
@@ -94,7 +94,7 @@ def _announce(old: xr.Dataset, kind: str, status: str) -> None:
 
 def _repeat(file: Path, kind: str, options: dict[str, Any]) -> Any:
     from fpsolve.errors import RunInterrupted
-    from fpsolve.rerunning import rerun as repeat
+    from fpsolve.results.rerun import rerun as repeat
 
     try:
         with _bar(kind) as progress:
@@ -123,9 +123,9 @@ def _bar(kind: str) -> Iterator[dict[str, Any]]:
 def _write(result: Any, target: Path) -> None:
     import xarray as xr
 
-    from fpsolve.io import save
-    from fpsolve.io.atomic import made_folder
-    from fpsolve.io.writing import write_dataset
+    from fpsolve._support.files import made_folder
+    from fpsolve._support.writing import write_dataset
+    from fpsolve.results import save
 
     made_folder(target.parent, "--out")
     if isinstance(result, xr.Dataset):
@@ -138,7 +138,7 @@ def _compared(file: Path, target: Path) -> Comparison:
     from dataclasses import replace
 
     from fpsolve.cli.compare import print_comparison
-    from fpsolve.comparisons import compare
+    from fpsolve.results.compare import compare
 
     found = replace(compare(file, target), names=("the file", "the new result"))
     print_comparison(found)
@@ -147,7 +147,7 @@ def _compared(file: Path, target: Path) -> Comparison:
 
 def _judge(found: Comparison, status: str) -> None:
     """Exit with 1 unless both are equal, or as equal as rounding lets them be."""
-    from fpsolve.comparisons.comparison import ROUNDING
+    from fpsolve.results.compare.comparison import ROUNDING
 
     if found.is_rounding:
         return

@@ -12,8 +12,8 @@ from fpsolve.cli.run import KeepCheckpoint, NoFigures, Threads, set_threads
 from fpsolve.cli.solving import keeping_partial_results, say_where, solve_and_write
 
 if TYPE_CHECKING:
-    from fpsolve.checkpoints.manifest import Manifest
-    from fpsolve.solution import Solution
+    from fpsolve.density.checkpoints.manifest import Manifest
+    from fpsolve.density.solution import Solution
 
 __all__ = ["resume"]
 
@@ -42,8 +42,8 @@ def resume(
     drawn and shown in the same way.
     """
     with reported_errors():
-        from fpsolve.checkpoints.manifest import read_manifest
-        from fpsolve.io.atomic import check_folder
+        from fpsolve._support.files import check_folder
+        from fpsolve.density.checkpoints.manifest import read_manifest
 
         manifest = read_manifest(directory)
         set_threads(threads)
@@ -60,9 +60,9 @@ def _resume_configured(
     directory: Path, manifest: Manifest, out: Path, no_figures: bool, keep: bool
 ) -> None:
     """Go on with what `fpsolve run` began."""
-    from fpsolve.checkpoints import Checkpoint
-    from fpsolve.checkpoints.start import read_start
-    from fpsolve.config import read_config
+    from fpsolve.cli.config import read_config
+    from fpsolve.density.checkpoints import Checkpoint
+    from fpsolve.density.checkpoints.start import read_start
 
     text = manifest.notes["configuration"]
     config = read_config(text, f"the configuration in `{directory}`")
@@ -77,7 +77,7 @@ def _resume_configured(
 def _resume_other(directory: Path, out: Path, figures: bool) -> None:
     """Go on with what Python began; the folder stays, for Python may still use it."""
     from fpsolve.cli import progress
-    from fpsolve.resuming import resume as completed
+    from fpsolve.density.resume import resume as completed
 
     def write(solution: Solution, figures: bool) -> None:
         _write(solution, out, directory.absolute().stem, figures)
@@ -89,9 +89,9 @@ def _resume_other(directory: Path, out: Path, figures: bool) -> None:
 
 
 def _write(solution: Solution, out: Path, name: str, figures: bool) -> None:
+    from fpsolve._support.files import made_folder
     from fpsolve.cli.solution_table import print_solution
-    from fpsolve.io import save
-    from fpsolve.io.atomic import made_folder
+    from fpsolve.results import save
 
     made_folder(out, "--out")
     print_solution(solution)

@@ -12,8 +12,8 @@ from fpsolve.cli.errors import reported_errors
 from fpsolve.cli.solving import solve_and_write
 
 if TYPE_CHECKING:
-    from fpsolve.checkpoints import Checkpoint
-    from fpsolve.config import RunConfig
+    from fpsolve.cli.config import RunConfig
+    from fpsolve.density.checkpoints import Checkpoint
 
 __all__ = [
     "KeepCheckpoint",
@@ -88,7 +88,7 @@ def run(
 
 def read_config(config: Path | None, example: str | None) -> RunConfig:
     """Return what a file or a packaged example describes."""
-    from fpsolve.config import EXAMPLES, example_path, load_config
+    from fpsolve.cli.config import EXAMPLES, example_path, load_config
 
     if config is not None and example is not None:
         raise ValueError(
@@ -117,8 +117,8 @@ def set_threads(threads: int | None) -> None:
 
 
 def _solve(config: RunConfig, out: Path, every: str | None, keep: bool) -> None:
-    from fpsolve.checkpoints.every import parse_interval
-    from fpsolve.io.atomic import check_folder, made_folder
+    from fpsolve._support.files import check_folder, made_folder
+    from fpsolve.density.checkpoints.every import parse_interval
 
     check_folder(out, "--out")
     if every is not None:
@@ -132,7 +132,7 @@ def _solve(config: RunConfig, out: Path, every: str | None, keep: bool) -> None:
 
 
 def _checkpoint(config: RunConfig, out: Path, every: str) -> Checkpoint:
-    from fpsolve.checkpoints import Checkpoint
+    from fpsolve.density.checkpoints import Checkpoint
 
     folder = out / f"{config.output.name}.checkpoint"
     return Checkpoint(folder, every, {"configuration": config.to_toml()})

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from fpsolve.solution import Solution
+    from fpsolve.density.solution import Solution
 
 __all__ = ["print_solution"]
 
@@ -16,7 +16,7 @@ def print_solution(solution: Solution) -> None:
     from rich.console import Console
     from rich.table import Table
 
-    from fpsolve.report.solution import accuracy_lines, series_columns
+    from fpsolve.pages.solution import accuracy_lines, series_columns
 
     console = Console(highlight=False, markup=False)
     table = Table(box=box.SIMPLE_HEAD)

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING
 from fpsolve.cli.errors import FAILED, INTERRUPTED, fail, say
 
 if TYPE_CHECKING:
-    from fpsolve.checkpoints import Checkpoint
-    from fpsolve.config import Problem, RunConfig
-    from fpsolve.solution import Solution
+    from fpsolve.cli.config import Problem, RunConfig
+    from fpsolve.density.checkpoints import Checkpoint
+    from fpsolve.density.solution import Solution
 
 __all__ = ["keeping_partial_results", "say_where", "solve_and_write"]
 
@@ -62,15 +62,15 @@ def solve_and_write(
         solution = _evolve(problem, checkpoint)
     write(solution, config.output.figures)
     if checkpoint is not None and not keep:
-        from fpsolve.checkpoints.folder import remove_folder
+        from fpsolve.density.checkpoints.folder import remove_folder
 
         remove_folder(checkpoint.folder)
 
 
 def say_where(folder: Path) -> None:
     """Say where a run with checkpoints begins, if not at its start."""
-    from fpsolve.checkpoints.manifest import MANIFEST
-    from fpsolve.checkpoints.status import status_of
+    from fpsolve.density.checkpoints.manifest import MANIFEST
+    from fpsolve.density.checkpoints.status import status_of
 
     if not (folder / MANIFEST).exists():
         return
@@ -111,7 +111,7 @@ def _write_if_possible(
 def _evolve(problem: Problem, checkpoint: Checkpoint | None) -> Solution:
     # Not `from fpsolve.solve import solve`: a test replaces the bar in its module.
     from fpsolve.cli import progress
-    from fpsolve.solve import solve
+    from fpsolve.density.solve import solve
 
     with progress.progress_bar() as report:
         return solve(

@@ -22,7 +22,7 @@ from fpsolve.cli.potentials import (
 from fpsolve.cli.run import NoFigures, Out
 
 if TYPE_CHECKING:
-    from fpsolve.spectral.spectrum import Spectrum
+    from fpsolve.spectral.eigen.spectrum import Spectrum
 
 __all__ = ["spectrum"]
 
@@ -72,15 +72,15 @@ def spectrum(
     and a figure. The gap is the rate at which p/p_S - 1 decays in the end.
     """
     with reported_errors():
-        from fpsolve.io.atomic import check_folder
+        from fpsolve._support.files import check_folder
 
         check_folder(out, "--out")
-        from fpsolve._checks import check_positive
+        from fpsolve._support.checks import check_positive
         from fpsolve.cli.writing import check_outputs
-        from fpsolve.curves import FixedBelt, MovingBelt
-        from fpsolve.io.recipes import recipe
-        from fpsolve.models import LayDownModel
-        from fpsolve.spectral.spectrum import spectrum as compute
+        from fpsolve.model.curves import FixedBelt, MovingBelt
+        from fpsolve.model.laydown import LayDownModel
+        from fpsolve.spectral.eigen.spectrum import spectrum as compute
+        from fpsolve.studies.recipe import recipe
 
         check_outputs(out, "spectrum.nc", "spectrum.png")
         curve = MovingBelt(belt_speed) if belt_speed else FixedBelt()
@@ -105,8 +105,8 @@ def spectrum(
 
 
 def _write(found: Spectrum, again: dict[str, str], out: Path, figure: bool) -> None:
-    from fpsolve.io.atomic import atomic_path, made_folder
-    from fpsolve.io.writing import write_dataset
+    from fpsolve._support.files import atomic_path, made_folder
+    from fpsolve._support.writing import write_dataset
     from fpsolve.plotting.rates import plot_spectrum
     from fpsolve.plotting.style import RESOLUTION, paper_style
     from fpsolve.studies.rates.dataset import spectrum_dataset

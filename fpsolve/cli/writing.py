@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 import typer
 
 if TYPE_CHECKING:
+    from fpsolve.density.solution import Solution
     from fpsolve.paths import Paths
-    from fpsolve.solution import Solution
 
 __all__ = ["check_outputs", "check_result", "write_result"]
 
@@ -21,7 +21,7 @@ _ENDINGS = ("", "-interrupted", "-failed")
 
 def check_outputs(out: Path, *names: str) -> None:
     """Raise before anything is computed if a name is taken by what is no file."""
-    from fpsolve.io.targets import check_targets
+    from fpsolve._support.targets import check_targets
 
     check_targets(out / name for name in names)
 
@@ -46,8 +46,8 @@ def write_result(
 
     A part of a result does not take the place of an older, complete one.
     """
-    from fpsolve.io import save
-    from fpsolve.io.atomic import atomic_path, made_folder
+    from fpsolve._support.files import atomic_path, made_folder
+    from fpsolve.results import save
 
     made_folder(out, "--out")
     toml = config.to_toml()

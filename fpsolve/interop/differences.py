@@ -12,10 +12,10 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve.grids import PhaseSpaceGrid
-from fpsolve.models import LayDownModel
-from fpsolve.planes import PlaneGrid
-from fpsolve.potentials.at_points import gradient_at, value_at
+from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.grids.plane import PlaneGrid
+from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.potentials.at_points import gradient_at, value_at
 
 __all__ = [
     "phase_space_rate",

@@ -9,8 +9,8 @@ import numpy as np
 import pde
 from numpy.typing import ArrayLike, NDArray
 
-from fpsolve.grids import PhaseSpaceGrid
-from fpsolve.planes import PlaneGrid
+from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.grids.plane import PlaneGrid
 
 __all__ = ["cartesian_grid", "from_pde_field", "own_grid", "to_pde_field"]
 

@@ -9,15 +9,15 @@ import numpy as np
 from numpy.typing import NDArray
 from pde.solvers import SolverBase
 
-from fpsolve import diagnostics
-from fpsolve._checks import check_positive
+from fpsolve._support.checks import check_positive
 from fpsolve.errors import DomainTooSmallError
+from fpsolve.grids import diagnostics
+from fpsolve.grids.plane import PlaneGrid
 from fpsolve.interop.fields import from_pde_field
 from fpsolve.interop.pypde import HydrodynamicPDE, expect_grid
 from fpsolve.interop.solvers import check_equation, checked_step, steps_between
-from fpsolve.planes import PlaneGrid
 from fpsolve.reduced.hydrodynamic import HydrodynamicLimit
-from fpsolve.reduced.stepping import METHODS, Method
+from fpsolve.reduced.implicit import METHODS, Method
 
 __all__ = ["ScharfetterGummelSolver"]
 

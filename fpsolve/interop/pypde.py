@@ -9,8 +9,8 @@ import numpy as np
 import pde
 from numpy.typing import NDArray
 
-from fpsolve.curves import Curve
-from fpsolve.grids import PhaseSpaceGrid
+from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.grids.plane import PlaneGrid
 from fpsolve.interop.differences import (
     phase_space_rate,
     phase_space_rate_bound,
@@ -18,8 +18,8 @@ from fpsolve.interop.differences import (
     plane_rate_bound,
 )
 from fpsolve.interop.fields import from_pde_field, own_grid
-from fpsolve.models import LayDownModel
-from fpsolve.planes import PlaneGrid
+from fpsolve.model.curves import Curve
+from fpsolve.model.laydown import LayDownModel
 
 __all__ = ["FokkerPlanckPDE", "HydrodynamicPDE", "expect_grid"]
 

@@ -10,22 +10,22 @@ import numpy as np
 from numpy.typing import NDArray
 from pde.solvers import SolverBase
 
-from fpsolve import diagnostics
-from fpsolve._checks import check_positive
+from fpsolve._support.checks import check_positive
+from fpsolve.density.recorder import Recorder
+from fpsolve.density.run import check_laws
+from fpsolve.density.schemes import DriftKick, SemiLagrangian
+from fpsolve.density.schemes.form import State
+from fpsolve.density.solve import Scheme, Tolerances, checked_start
 from fpsolve.errors import (
     DomainTooSmallError,
     MassDriftError,
     NegativeDensityError,
     NonFiniteDensityError,
 )
-from fpsolve.grids import PhaseSpaceGrid
+from fpsolve.grids import diagnostics
+from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.interop.fields import from_pde_field
 from fpsolve.interop.pypde import FokkerPlanckPDE, expect_grid
-from fpsolve.recording import Recorder
-from fpsolve.run import check_laws
-from fpsolve.schemes import DriftKick, SemiLagrangian
-from fpsolve.schemes.form import State
-from fpsolve.solve import Scheme, Tolerances, checked_start
 
 __all__ = ["DriftKickSolver", "SchemeSolverBase", "SemiLagrangianSolver"]
 

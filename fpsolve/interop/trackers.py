@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 from pde.trackers import DataTracker
 from pde.visualization.movies import Movie
 
-from fpsolve import diagnostics
-from fpsolve._checks import check_integer, check_path, check_positive
-from fpsolve.grids import PhaseSpaceGrid
+from fpsolve._support.checks import check_integer, check_path, check_positive
+from fpsolve.grids import diagnostics
+from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.grids.plane import PlaneGrid
 from fpsolve.interop.fields import from_pde_field
-from fpsolve.models import LayDownModel
-from fpsolve.planes import PlaneGrid
+from fpsolve.model.laydown import LayDownModel
 
 if TYPE_CHECKING:
     from matplotlib.animation import PillowWriter

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve._arrays import check_answers
-from fpsolve._checks import check_call
+from fpsolve._support.arrays import check_answers
+from fpsolve._support.checks import check_call
 from fpsolve.paths.ensemble import angle_of
 from fpsolve.paths.trajectory import traced
 

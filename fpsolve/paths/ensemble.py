@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fpsolve.errors import FpsolveError
-from fpsolve.grids import PhaseSpaceGrid
+from fpsolve.evolution.schedule import Schedule
+from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.paths.integrators import Integrator
 from fpsolve.paths.randomness import noise_key, start_generator
-from fpsolve.schedule import Schedule
 
 __all__ = ["START_BLOCK", "Ensemble", "GivenStart", "angle_of", "state_of"]
 

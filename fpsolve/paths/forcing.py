@@ -8,14 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fpsolve._kernels import paths as kernels
-from fpsolve.curves.curve import Curve
-from fpsolve.potentials import (
+from fpsolve.model.curves.curve import Curve
+from fpsolve.model.potentials import (
     FreePotential,
     LinearPotential,
     PowerPotential,
     QuadraticPotential,
 )
-from fpsolve.potentials.potential import Potential
+from fpsolve.model.potentials.potential import Potential
 
 __all__ = ["compiled_potential", "half_step_shifts"]
 

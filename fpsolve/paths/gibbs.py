@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from fpsolve.model.potentials import LinearPotential, PowerPotential, QuadraticPotential
+from fpsolve.model.potentials.potential import Potential
 from fpsolve.paths.patches import PatchRejection
-from fpsolve.potentials import LinearPotential, PowerPotential, QuadraticPotential
-from fpsolve.potentials.potential import Potential
 
 __all__ = ["GibbsSampler"]
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve import diagnostics
-from fpsolve.grids import PhaseSpaceGrid
+from fpsolve.grids import diagnostics
+from fpsolve.grids.phase_space import PhaseSpaceGrid
 
 __all__ = ["Histogram", "count_paths", "wrapped"]
 

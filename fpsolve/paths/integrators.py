@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from fpsolve._kernels import paths as kernels
 from fpsolve.errors import NonFinitePathError
-from fpsolve.models import LayDownModel
+from fpsolve.model.laydown import LayDownModel
 from fpsolve.paths.forcing import compiled_potential, half_step_shifts
 
 __all__ = ["LARGEST_TURN", "METHODS", "Integrator"]

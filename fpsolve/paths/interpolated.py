@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from fpsolve.grids import PhaseSpaceGrid
+from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.paths.rejection import CellRejection
 from fpsolve.paths.spline_bounds import (
     SPLINE_ORDER,

@@ -8,12 +8,17 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from fpsolve._checks import check_finite, check_kind, check_non_negative, check_pair
-from fpsolve.grids import PhaseSpaceGrid, check_grid
-from fpsolve.initial import checked_covariance
+from fpsolve._support.checks import (
+    check_finite,
+    check_kind,
+    check_non_negative,
+    check_pair,
+)
+from fpsolve.grids.initial import checked_covariance
+from fpsolve.grids.phase_space import PhaseSpaceGrid, check_grid
+from fpsolve.model.potentials import Potential, potential_to_dict
 from fpsolve.paths.gibbs import GibbsSampler
 from fpsolve.paths.interpolated import InterpolatedDensity
-from fpsolve.potentials import Potential, potential_to_dict
 
 __all__ = ["DensityLaw", "EquilibriumLaw", "GaussianLaw", "Law", "PointLaw"]
 

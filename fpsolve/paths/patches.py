@@ -7,8 +7,8 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve.potentials.partition import Normalisation
-from fpsolve.potentials.quadrature import lowest_nearby, node_values, rules_for
+from fpsolve.model.potentials.partition import Normalisation
+from fpsolve.model.potentials.quadrature import lowest_nearby, node_values, rules_for
 
 __all__ = ["PatchRejection"]
 

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from fpsolve._checks import check_integer
+from fpsolve._support.checks import check_integer
 
 __all__ = ["noise_key", "seed_number", "start_generator"]
 

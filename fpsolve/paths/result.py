@@ -11,15 +11,15 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve._checks import check_integer
-from fpsolve.grids import PhaseSpaceGrid, check_grid
-from fpsolve.models import LayDownModel
+from fpsolve._support.checks import check_integer
+from fpsolve.evolution.schedule import saved_index
+from fpsolve.grids.phase_space import PhaseSpaceGrid, check_grid
+from fpsolve.model.laydown import LayDownModel
 from fpsolve.paths.averages import Observable, observed, time_averages
 from fpsolve.paths.ensemble import Ensemble, angle_of
 from fpsolve.paths.histogram import Histogram, count_paths, wrapped
 from fpsolve.paths.moments import Moments
 from fpsolve.paths.trajectory import Trajectory, trajectory
-from fpsolve.schedule import saved_index
 
 if TYPE_CHECKING:
     import xarray
@@ -293,13 +293,13 @@ class Paths:
 
     def to_xarray(self) -> xarray.Dataset:
         """Labelled Dataset of positions, moments and histograms."""
-        from fpsolve.io import to_xarray
+        from fpsolve.results import to_xarray
 
         return to_xarray(self)
 
     def save(self, path: str | Path, engine: str | None = None) -> Path:
         """Write the paths to netCDF, or to zarr for a path that ends in .zarr."""
-        from fpsolve.io import save
+        from fpsolve.results import save
 
         return save(self, path, engine=engine)
 

@@ -14,18 +14,21 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve._arrays import check_numbers
-from fpsolve._checks import (
+from fpsolve._support.arrays import check_numbers
+from fpsolve._support.checks import (
     check_flag,
     check_integer,
     check_one_of,
     check_real,
     shown,
 )
+from fpsolve._support.memory import OVERHEAD, check_memory
+from fpsolve._support.progress import ProgressCallback, reporting
+from fpsolve._support.provenance import Stopwatch, announced_compilation
 from fpsolve.errors import GridMismatchError, NonFinitePathError, RunInterrupted
-from fpsolve.grids import PhaseSpaceGrid, check_grid
-from fpsolve.memory import OVERHEAD, check_memory
-from fpsolve.models import LayDownModel, check_model
+from fpsolve.evolution.schedule import Schedule, make_schedule
+from fpsolve.grids.phase_space import PhaseSpaceGrid, check_grid
+from fpsolve.model.laydown import LayDownModel, check_model
 from fpsolve.paths.batch import Batch, BatchRun, batches_of
 from fpsolve.paths.elsewhere import check_repeats, code_of, run_there
 from fpsolve.paths.ensemble import Ensemble, GivenStart
@@ -33,9 +36,6 @@ from fpsolve.paths.integrators import LARGEST_TURN, METHODS
 from fpsolve.paths.laws import PointLaw
 from fpsolve.paths.randomness import seed_number
 from fpsolve.paths.result import Paths
-from fpsolve.progress import ProgressCallback, reporting
-from fpsolve.provenance import Stopwatch, announced_compilation
-from fpsolve.schedule import Schedule, make_schedule
 
 __all__ = ["go_on", "sample_paths"]
 

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fpsolve._kernels.paths import N_STATE
-from fpsolve.curves.curve import Curve
+from fpsolve.model.curves.curve import Curve
 from fpsolve.paths.ensemble import angle_of
 
 if TYPE_CHECKING:

@@ -8,15 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fpsolve.density.solution import Solution
 from fpsolve.plotting.selection import check_solution, select_s
-from fpsolve.plotting.style import (
-    COLOURS,
-    COLUMN,
-    new_figure,
-    paper_style,
-    parameters,
-)
-from fpsolve.solution import Solution
+from fpsolve.plotting.style import COLOURS, COLUMN, new_figure, paper_style, parameters
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -8,16 +8,10 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve._checks import check_kind, told_apart
-from fpsolve.plotting.style import (
-    COLOURS,
-    PAGE,
-    new_figure,
-    paper_style,
-    parameters,
-)
-from fpsolve.schedule import index_of
-from fpsolve.studies.agreement import CrossCheck
+from fpsolve._support.checks import check_kind, told_apart
+from fpsolve.evolution.schedule import index_of
+from fpsolve.plotting.style import COLOURS, PAGE, new_figure, paper_style, parameters
+from fpsolve.studies.agreement.check import CrossCheck
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve._checks import check_kind
-from fpsolve.comparisons import Comparison
-from fpsolve.comparisons.differences import FLOOR
-from fpsolve.comparisons.wording import verdict
+from fpsolve._support.checks import check_kind
 from fpsolve.plotting.style import COLOURS, PAGE, new_figure, paper_style
+from fpsolve.results.compare import Comparison
+from fpsolve.results.compare.differences import FLOOR
+from fpsolve.results.compare.wording import verdict
 
 if TYPE_CHECKING:
     import xarray as xr

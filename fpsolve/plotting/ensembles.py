@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from fpsolve.grids import PhaseSpaceGrid
+from fpsolve.density.solution import Solution
+from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.plotting.maps import (
     add_colour_bar,
     colour_scale,
@@ -18,14 +19,7 @@ from fpsolve.plotting.maps import (
 )
 from fpsolve.plotting.moments import PANELS, draw_moments
 from fpsolve.plotting.selection import check_paths
-from fpsolve.plotting.style import (
-    COLOURS,
-    PAGE,
-    new_figure,
-    paper_style,
-    parameters,
-)
-from fpsolve.solution import Solution
+from fpsolve.plotting.style import COLOURS, PAGE, new_figure, paper_style, parameters
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -7,16 +7,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve.decay import NOISE_LEVEL, DecayRate
+from fpsolve.density.solution import Solution
+from fpsolve.evolution.decay import NOISE_LEVEL, DecayRate
 from fpsolve.plotting.selection import check_solution
-from fpsolve.plotting.style import (
-    COLOURS,
-    COLUMN,
-    new_figure,
-    paper_style,
-    parameters,
-)
-from fpsolve.solution import Solution
+from fpsolve.plotting.style import COLOURS, COLUMN, new_figure, paper_style, parameters
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

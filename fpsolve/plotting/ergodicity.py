@@ -9,7 +9,7 @@ import numpy as np
 
 from fpsolve.plotting.selection import check_dataset
 from fpsolve.plotting.style import COLOURS, PAGE, new_figure, paper_style
-from fpsolve.studies.ergodic_fit import ErgodicFit, ErrorShape, fit_ergodic_error
+from fpsolve.studies.ergodicity.fit import ErgodicFit, ErrorShape, fit_ergodic_error
 
 if TYPE_CHECKING:
     import xarray as xr

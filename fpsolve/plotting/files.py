@@ -7,8 +7,9 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from fpsolve._checks import shown
-from fpsolve.io.atomic import atomic_path, made_folder
+from fpsolve._support.checks import shown
+from fpsolve._support.files import atomic_path, made_folder
+from fpsolve.density.solution import Solution
 from fpsolve.paths import Paths
 from fpsolve.plotting.angle import plot_angle
 from fpsolve.plotting.ensembles import plot_ensemble
@@ -18,12 +19,11 @@ from fpsolve.plotting.moments import plot_moments
 from fpsolve.plotting.overview import plot_overview
 from fpsolve.plotting.style import RESOLUTION, paper_style
 from fpsolve.plotting.trajectories import plot_fibre, plot_trajectories
-from fpsolve.solution import Solution
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from fpsolve.io.dataset import Result
+    from fpsolve.results.kinds import Result
 
     Figures = dict[str, Callable[[Any], Figure]]
 
@@ -73,7 +73,7 @@ def possible_figures(result: Result) -> Figures:
 
 
 def _kind_of(result: Any) -> str:
-    from fpsolve.io.dataset import kind_of
+    from fpsolve.results.kinds import kind_of
 
     try:
         return kind_of(result)

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from fpsolve.density.solution import Solution
 from fpsolve.plotting.style import DENSITY_MAP
-from fpsolve.solution import Solution
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from numpy.typing import NDArray
 
+from fpsolve.density.solution import Solution
 from fpsolve.plotting.maps import (
     SHARES,
     add_colour_bar,
@@ -17,14 +18,7 @@ from fpsolve.plotting.maps import (
     visible_region,
 )
 from fpsolve.plotting.selection import check_solution, select_s
-from fpsolve.plotting.style import (
-    COLUMN,
-    PAGE,
-    new_figure,
-    paper_style,
-    parameters,
-)
-from fpsolve.solution import Solution
+from fpsolve.plotting.style import COLUMN, PAGE, new_figure, paper_style, parameters
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

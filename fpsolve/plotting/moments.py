@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
+from fpsolve.density.solution import Solution
 from fpsolve.plotting.selection import check_solution
 from fpsolve.plotting.style import (
     COLOURS,
@@ -13,7 +14,6 @@ from fpsolve.plotting.style import (
     paper_style,
     parameters,
 )
-from fpsolve.solution import Solution
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

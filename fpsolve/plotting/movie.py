@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fpsolve._checks import check_path, check_real
-from fpsolve.io.atomic import atomic_path
+from fpsolve._support.checks import check_path, check_real
+from fpsolve._support.files import atomic_path
+from fpsolve.density.solution import Solution
 from fpsolve.plotting.entropy import draw_entropy, has_entropy
 from fpsolve.plotting.maps import (
     add_colour_bar,
@@ -20,14 +21,7 @@ from fpsolve.plotting.maps import (
 )
 from fpsolve.plotting.moments import draw_moments
 from fpsolve.plotting.selection import check_solution
-from fpsolve.plotting.style import (
-    COLOURS,
-    PAGE,
-    new_figure,
-    paper_style,
-    parameters,
-)
-from fpsolve.solution import Solution
+from fpsolve.plotting.style import COLOURS, PAGE, new_figure, paper_style, parameters
 
 if TYPE_CHECKING:
     from matplotlib.animation import AbstractMovieWriter

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from fpsolve.density.solution import Solution
 from fpsolve.plotting.angle import draw_angle
 from fpsolve.plotting.entropy import draw_entropy, has_entropy
 from fpsolve.plotting.maps import (
@@ -16,7 +17,6 @@ from fpsolve.plotting.maps import (
 from fpsolve.plotting.moments import draw_moments
 from fpsolve.plotting.selection import check_solution, select_s
 from fpsolve.plotting.style import PAGE, new_figure, paper_style, parameters
-from fpsolve.solution import Solution
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure, SubFigure

@@ -8,11 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fpsolve.plotting.ergodicity import _symbol
-from fpsolve.plotting.selection import (
-    check_dataset,
-    check_datasets,
-    check_spectrum,
-)
+from fpsolve.plotting.selection import check_dataset, check_datasets, check_spectrum
 from fpsolve.plotting.style import COLOURS, COLUMN, PAGE, new_figure, paper_style
 
 if TYPE_CHECKING:
@@ -20,8 +16,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from fpsolve.report.spectrum import StoredSpectrum
-    from fpsolve.spectral.spectrum import Spectrum
+    from fpsolve.pages.spectrum import StoredSpectrum
+    from fpsolve.spectral.eigen.spectrum import Spectrum
 
 __all__ = [
     "plot_asymptotic_variance",
@@ -237,8 +233,8 @@ def _draw_integral(axes: Axes, dataset: xr.Dataset, colour: str) -> None:
 
 def _theory(dataset: xr.Dataset) -> dict[str, np.ndarray]:
     """Bounds and asymptotes at many noises, where the potential can be made again."""
-    from fpsolve.io.declared import declared
-    from fpsolve.potentials import potential_from_dict
+    from fpsolve._support.declared import declared
+    from fpsolve.model.potentials import potential_from_dict
     from fpsolve.studies.rates.dataset import theory_curves
 
     noise = dataset["noise"].to_numpy()

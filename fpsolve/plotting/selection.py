@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fpsolve._checks import check_kind, shown
+from fpsolve._support.checks import check_kind, shown
+from fpsolve.density.solution import Solution
+from fpsolve.evolution.schedule import checked_stops
 from fpsolve.paths import Paths
-from fpsolve.schedule import checked_stops
-from fpsolve.solution import Solution
 
 if TYPE_CHECKING:
     from fpsolve.reduced.hydrodynamic import HydrodynamicSolution
@@ -103,6 +103,6 @@ def check_hydrodynamic_solution(solution: Any) -> None:
 
 def check_spectrum(found: Any) -> None:
     """Raise TypeError unless it is a spectrum of the generator."""
-    from fpsolve.spectral.spectrum import Spectrum
+    from fpsolve.spectral.eigen.spectrum import Spectrum
 
     check_kind("found", found, Spectrum, "it is what `spectrum` returns")

@@ -9,13 +9,13 @@ from contextvars import ContextVar
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
-from fpsolve.solution import Solution
+from fpsolve.density.solution import Solution
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from fpsolve.models import LayDownModel
+    from fpsolve.model.laydown import LayDownModel
 
 __all__ = [
     "COLOURS",

@@ -23,9 +23,9 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from fpsolve.curves import Curve
+    from fpsolve.model.curves import Curve
+    from fpsolve.model.potentials import Potential
     from fpsolve.paths import Paths, Trajectory
-    from fpsolve.potentials import Potential
 
 __all__ = ["plot_fibre", "plot_nozzles", "plot_trajectories"]
 
@@ -294,7 +294,7 @@ class _Region(NamedTuple):
 
 def _equilibrium_region(potential: Potential, n_cells: int = 400) -> _Region | None:
     """Return the region in a square that holds all but a thousandth of the mass."""
-    from fpsolve.potentials.nodes import gibbs_nodes
+    from fpsolve.model.potentials.nodes import gibbs_nodes
 
     if not potential.normalisable:
         return None

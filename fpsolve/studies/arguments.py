@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
-from fpsolve._checks import check_call, shown
+from fpsolve._support.checks import check_call, shown
 
 __all__ = ["check_functions", "names_of", "series_of"]
 

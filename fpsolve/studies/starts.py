@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve import diagnostics, initial
-from fpsolve.grids import PhaseSpaceGrid
+from fpsolve.grids import diagnostics, initial
+from fpsolve.grids.phase_space import PhaseSpaceGrid
 
 __all__ = ["density_and_law"]
 

@@ -6,7 +6,7 @@ import numpy as np
 
 import fpsolve as fp
 from fpsolve import interop, io, plotting, studies
-from fpsolve.config import load_config
+from fpsolve.cli.config import load_config
 from fpsolve.errors import MemoryLimitError
 
 from . import problems as at

@@ -175,7 +175,7 @@ def scaling_figure(tables: Tables) -> Figure:
 
 def draw_all(tables: Tables, out: Path) -> None:
     """Draw the figures whose numbers are there."""
-    from fpsolve.io.atomic import atomic_path
+    from fpsolve._support.files import atomic_path
 
     for name, parts in FIGURES.items():
         files = [tables.folder / f"{tables.prefix}-{part}.json" for part in parts]

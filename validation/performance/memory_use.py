@@ -38,7 +38,7 @@ def run_ours(name: str, n: int) -> int:
     import ours
 
     import fpsolve as fp
-    from fpsolve.memory import required_memory
+    from fpsolve._support.memory import required_memory
 
     ds = 1 / 8
     scheme = ours.make_scheme(ours.case(name, (n, n, n), ds))

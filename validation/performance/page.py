@@ -38,7 +38,7 @@ def refreshed(source: str) -> str:
 
 def main() -> None:
     """Refresh a page in place."""
-    from fpsolve.io.atomic import atomic_path
+    from fpsolve._support.files import atomic_path
 
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("page", type=Path, nargs="?", default=PAGE)

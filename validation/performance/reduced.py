@@ -24,7 +24,7 @@ from results import write_json  # noqa: E402
 from timing import Measured, Stopwatch, keep_memory, measure  # noqa: E402
 
 import fpsolve as fp  # noqa: E402
-from fpsolve.provenance import versions  # noqa: E402
+from fpsolve._support.provenance import versions  # noqa: E402
 
 HERE = Path(__file__).parent
 MODEL = fp.LayDownModel(fp.QuadraticPotential(), 2.0, fp.MovingBelt(0.1))

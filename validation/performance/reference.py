@@ -116,7 +116,7 @@ def load(problem: Problem, *, quick: bool = False) -> Reference:
 
 def keep(path: Path, reference: Reference) -> None:
     """Write a reference; the file appears complete or not at all."""
-    from fpsolve.io.atomic import atomic_path
+    from fpsolve._support.files import atomic_path
 
     path.parent.mkdir(exist_ok=True)
     with atomic_path(path) as draft:

@@ -78,7 +78,7 @@ def write_part(
 
 def write_json(path: Path, content: dict[str, Any]) -> None:
     """Write the numbers; the file appears complete or not at all."""
-    from fpsolve.io.atomic import atomic_path
+    from fpsolve._support.files import atomic_path
 
     path.parent.mkdir(parents=True, exist_ok=True)
     text = json.dumps(rounded(content), indent=1, ensure_ascii=False)

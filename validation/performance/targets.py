@@ -42,7 +42,7 @@ from problem import HALF_WIDTH, Problem, initial_density, open_mesh  # noqa: E40
 from start_up import IMPORTS, median, timed  # noqa: E402
 from timing import Stopwatch, keep_memory  # noqa: E402
 
-from fpsolve.recording import Recorder  # noqa: E402
+from fpsolve.density.recorder import Recorder  # noqa: E402
 
 ROUNDS = 15
 SECONDS_PER_SAMPLE = 0.05

@@ -27,12 +27,12 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 from reporting import Report
 
 import fpsolve as fp
-from fpsolve.checkpoints.manifest import MANIFEST, read_manifest
-from fpsolve.checkpoints.snapshots import SnapshotFiles
-from fpsolve.checkpoints.start import read_start
-from fpsolve.checkpoints.status import status_of
-from fpsolve.checkpoints.store import PassStore
-from fpsolve.schedule import make_schedule
+from fpsolve.density.checkpoints.manifest import MANIFEST, read_manifest
+from fpsolve.density.checkpoints.snapshots import SnapshotFiles
+from fpsolve.density.checkpoints.start import read_start
+from fpsolve.density.checkpoints.status import status_of
+from fpsolve.density.checkpoints.store import PassStore
+from fpsolve.evolution.schedule import make_schedule
 
 CHILD = Path(__file__).with_name("reporting_child.py")
 # Steps between two checkpoints, and between two records.

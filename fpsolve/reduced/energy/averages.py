@@ -11,7 +11,7 @@ from numpy.polynomial import Chebyshev
 from numpy.polynomial.legendre import leggauss
 from numpy.typing import ArrayLike, NDArray
 
-from fpsolve._arrays import check_answers, check_finite_numbers
+from fpsolve._support.arrays import check_answers, check_finite_numbers
 from fpsolve.reduced.energy.well import Well
 
 __all__ = ["OrbitAverages"]

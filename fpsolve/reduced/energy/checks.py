@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from fpsolve._arrays import check_numbers
+from fpsolve._support.arrays import check_numbers
 
 __all__ = ["check_energies"]
 

@@ -12,7 +12,7 @@ from numpy.polynomial import Chebyshev
 from numpy.polynomial.chebyshev import chebpts1, chebvander
 from numpy.typing import ArrayLike, NDArray
 
-from fpsolve._checks import check_real
+from fpsolve._support.checks import check_real
 from fpsolve.reduced.energy.averages import OrbitAverages
 from fpsolve.reduced.energy.checks import check_energies
 

@@ -7,11 +7,12 @@ from collections.abc import Callable, Iterable, Mapping
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from fpsolve._blas import one_blas_thread
-from fpsolve._checks import check_flag
+from fpsolve._support.blas import one_blas_thread
+from fpsolve._support.checks import check_flag
+from fpsolve._support.progress import ProgressCallback, reporting
+from fpsolve._support.provenance import Stopwatch
 from fpsolve.errors import RunInterrupted
-from fpsolve.progress import ProgressCallback, reporting
-from fpsolve.provenance import Stopwatch
+from fpsolve.evolution.schedule import checked_stops, make_schedule
 from fpsolve.reduced.energy.coefficients import Coefficients
 from fpsolve.reduced.energy.grid import EnergyGrid
 from fpsolve.reduced.energy.passage import Passage
@@ -19,8 +20,7 @@ from fpsolve.reduced.energy.sampling import EnergyPaths, sample_energies
 from fpsolve.reduced.energy.solution import EnergySolution
 from fpsolve.reduced.energy.spectrum import EnergySpectrum, energy_spectrum
 from fpsolve.reduced.energy.start import masses_of, starting_masses
-from fpsolve.reduced.evolution import Relaxation, relax, relax_extrapolated
-from fpsolve.schedule import checked_stops, make_schedule
+from fpsolve.reduced.relaxation import Relaxation, relax, relax_extrapolated
 
 __all__ = ["EnergyProcess"]
 

@@ -10,13 +10,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from fpsolve._checks import check_integer, check_one_of, check_real
-from fpsolve.memory import check_memory
+from fpsolve._support.checks import check_integer, check_one_of, check_real
+from fpsolve._support.memory import check_memory
+from fpsolve.evolution.schedule import make_schedule
 from fpsolve.reduced.energy.averages import OrbitAverages
 from fpsolve.reduced.energy.checks import check_energies
 from fpsolve.reduced.energy.grid import EnergyGrid
 from fpsolve.reduced.energy.steps import Sphere, Transition
-from fpsolve.schedule import make_schedule
 
 __all__ = ["EnergyPaths", "sample_energies"]
 

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from fpsolve.evolution.schedule import saved_index
 from fpsolve.reduced.energy.grid import EnergyGrid
-from fpsolve.schedule import saved_index
 
 if TYPE_CHECKING:
     import xarray
@@ -99,13 +99,13 @@ class EnergySolution:
 
     def to_xarray(self) -> xarray.Dataset:
         """Labelled Dataset: density (s, g), series over step, parameters."""
-        from fpsolve.io import to_xarray
+        from fpsolve.results import to_xarray
 
         return to_xarray(self)
 
     def save(self, path: str | Path, engine: str | None = None) -> Path:
         """Write the solution to netCDF, or to zarr for a path that ends in .zarr."""
-        from fpsolve.io import save
+        from fpsolve.results import save
 
         return save(self, path, engine=engine)
 

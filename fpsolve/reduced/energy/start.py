@@ -9,7 +9,7 @@ import numpy as np
 from numpy.polynomial.legendre import leggauss
 from numpy.typing import ArrayLike, NDArray
 
-from fpsolve._arrays import check_numbers
+from fpsolve._support.arrays import check_numbers
 from fpsolve.reduced.energy.checks import check_energies
 from fpsolve.reduced.energy.grid import EnergyGrid
 

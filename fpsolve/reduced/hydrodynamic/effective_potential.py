@@ -9,16 +9,16 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from fpsolve.models import LayDownModel
-from fpsolve.planes import PlaneGrid
-from fpsolve.potentials import (
+from fpsolve.grids.plane import PlaneGrid
+from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.potentials import (
     LinearPotential,
     Potential,
     PowerPotential,
     QuadraticPotential,
 )
-from fpsolve.potentials.at_points import value_at
-from fpsolve.potentials.partition import normalisation_of
+from fpsolve.model.potentials.at_points import value_at
+from fpsolve.model.potentials.partition import normalisation_of
 
 __all__ = ["EffectivePotential", "check_limit"]
 

@@ -7,10 +7,10 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve._arrays import check_finite_numbers
-from fpsolve._checks import check_non_negative, check_positive
-from fpsolve.grids import PhaseSpaceGrid
-from fpsolve.planes import PlaneGrid
+from fpsolve._support.arrays import check_finite_numbers
+from fpsolve._support.checks import check_non_negative, check_positive
+from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.grids.plane import PlaneGrid
 
 __all__ = ["InitialLayer"]
 

@@ -8,15 +8,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from fpsolve import diagnostics
-from fpsolve._blas import one_blas_thread
-from fpsolve._checks import check_flag, check_tolerance
+from fpsolve._support.blas import one_blas_thread
+from fpsolve._support.checks import check_flag, check_tolerance
+from fpsolve._support.progress import ProgressCallback
 from fpsolve.errors import DomainTooSmallError
-from fpsolve.grids import PhaseSpaceGrid
-from fpsolve.models import LayDownModel
-from fpsolve.planes import PlaneGrid, plane_of
-from fpsolve.potentials import QuadraticPotential
-from fpsolve.progress import ProgressCallback
+from fpsolve.evolution.schedule import checked_stops
+from fpsolve.grids import diagnostics
+from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.grids.plane import PlaneGrid, plane_of
+from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.potentials import QuadraticPotential
 from fpsolve.reduced.hydrodynamic import reconstruction, run, sampling
 from fpsolve.reduced.hydrodynamic.effective_potential import check_limit
 from fpsolve.reduced.hydrodynamic.initial_layer import InitialLayer
@@ -27,7 +28,6 @@ from fpsolve.reduced.hydrodynamic.solution import (
     HydrodynamicSteadyState,
 )
 from fpsolve.reduced.hydrodynamic.spectrum import HydrodynamicSpectrum, spectrum_of
-from fpsolve.schedule import checked_stops
 
 __all__ = ["HydrodynamicLimit"]
 

@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from fpsolve._arrays import check_numbers
-from fpsolve._checks import check_integer, check_non_negative, check_pair
-from fpsolve.initial import checked_covariance
-from fpsolve.models import LayDownModel
-from fpsolve.potentials import QuadraticPotential
+from fpsolve._support.arrays import check_numbers
+from fpsolve._support.checks import check_integer, check_non_negative, check_pair
+from fpsolve.grids.initial import checked_covariance
+from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.potentials import QuadraticPotential
 from fpsolve.reduced.hydrodynamic.effective_potential import check_limit
 
 __all__ = ["OrnsteinUhlenbeckLimit"]

@@ -7,12 +7,12 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve._arrays import check_finite_numbers
-from fpsolve._checks import check_positive, shown
-from fpsolve.grids import PhaseSpaceGrid
-from fpsolve.planes import PlaneGrid
-from fpsolve.potentials import Potential
-from fpsolve.potentials.at_points import value_at
+from fpsolve._support.arrays import check_finite_numbers
+from fpsolve._support.checks import check_positive, shown
+from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.grids.plane import PlaneGrid
+from fpsolve.model.potentials import Potential
+from fpsolve.model.potentials.at_points import value_at
 
 __all__ = ["balanced_gradient", "reconstruct"]
 

@@ -9,15 +9,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve._checks import check_positive
+from fpsolve._support.checks import check_positive
+from fpsolve._support.progress import ProgressCallback, reporting
+from fpsolve._support.provenance import Stopwatch
 from fpsolve.errors import DomainTooSmallError, RunInterrupted
-from fpsolve.planes import PlaneGrid
-from fpsolve.progress import ProgressCallback, reporting
-from fpsolve.provenance import Stopwatch
-from fpsolve.reduced.evolution import Relaxation, relax, relax_extrapolated
+from fpsolve.evolution.schedule import Schedule, make_schedule
+from fpsolve.grids.plane import PlaneGrid
 from fpsolve.reduced.hydrodynamic.scharfetter_gummel import gibbs_masses
 from fpsolve.reduced.hydrodynamic.solution import HydrodynamicSolution
-from fpsolve.schedule import Schedule, make_schedule
+from fpsolve.reduced.relaxation import Relaxation, relax, relax_extrapolated
 
 if TYPE_CHECKING:
     from fpsolve.reduced.hydrodynamic.limit import HydrodynamicLimit

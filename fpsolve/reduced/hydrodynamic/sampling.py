@@ -10,16 +10,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve._arrays import check_numbers
-from fpsolve._checks import check_integer, check_positive
+from fpsolve._support.arrays import check_numbers
+from fpsolve._support.checks import check_integer, check_positive
+from fpsolve._support.memory import check_memory
 from fpsolve.errors import NonFinitePathError
-from fpsolve.memory import check_memory
-from fpsolve.models import LayDownModel
-from fpsolve.planes import PlaneGrid
-from fpsolve.potentials import QuadraticPotential
+from fpsolve.evolution.schedule import Schedule, make_schedule
+from fpsolve.evolution.schedule import checked_stops as checked_series
+from fpsolve.grids.plane import PlaneGrid
+from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.potentials import QuadraticPotential
 from fpsolve.reduced.hydrodynamic.ornstein_uhlenbeck import OrnsteinUhlenbeckLimit
-from fpsolve.schedule import Schedule, make_schedule
-from fpsolve.schedule import checked_stops as checked_series
 
 __all__ = ["METHODS", "HydrodynamicPaths", "sample"]
 

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve.decay import DecayRate, fit_decay
-from fpsolve.planes import PlaneGrid
-from fpsolve.schedule import saved_index
+from fpsolve.evolution.decay import DecayRate, fit_decay
+from fpsolve.evolution.schedule import saved_index
+from fpsolve.grids.plane import PlaneGrid
 
 if TYPE_CHECKING:
     import xarray
@@ -154,12 +154,12 @@ class HydrodynamicSolution:
 
     def to_xarray(self) -> xarray.Dataset:
         """Labelled Dataset: densities (s, xi1, xi2), series over the steps."""
-        from fpsolve.io import to_xarray
+        from fpsolve.results import to_xarray
 
         return to_xarray(self)
 
     def save(self, path: str | Path, engine: str | None = None) -> Path:
         """Write the solution to netCDF, or to zarr for a path that ends in .zarr."""
-        from fpsolve.io import save
+        from fpsolve.results import save
 
         return save(self, path, engine=engine)

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve._checks import check_integer
-from fpsolve.planes import PlaneGrid
+from fpsolve._support.checks import check_integer
+from fpsolve.grids.plane import PlaneGrid
 from fpsolve.reduced.hydrodynamic.scharfetter_gummel import gibbs_masses
 
 if TYPE_CHECKING:

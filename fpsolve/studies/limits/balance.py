@@ -5,7 +5,7 @@ from __future__ import annotations
 from scipy.optimize import brentq
 from scipy.special import i0e, i1e
 
-from fpsolve._checks import check_real
+from fpsolve._support.checks import check_real
 
 __all__ = ["balanced_force"]
 

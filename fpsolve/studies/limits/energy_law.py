@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import stats
 
-from fpsolve.grids import PhaseSpaceGrid
+from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.paths import GaussianLaw
 from fpsolve.reduced.energy import EnergyGrid, EnergyProcess
 

@@ -9,17 +9,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fpsolve._checks import check_noise
+from fpsolve._support.checks import check_noise
+from fpsolve._support.labels import labels, made_with, to_json
 from fpsolve.errors import MemoryLimitError, ToleranceError
-from fpsolve.io.attributes import labels, made_with, to_json
-from fpsolve.io.recipes import recipe
-from fpsolve.models import LayDownModel
-from fpsolve.potentials import Potential, potential_to_dict
+from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.potentials import Potential, potential_to_dict
 from fpsolve.reduced.energy import EnergyProcess
-from fpsolve.spectral.bases import discretisation_for
-from fpsolve.spectral.sectors import Sector
-from fpsolve.spectral.spectrum import spectrum
+from fpsolve.spectral.bases.choice import discretisation_for
+from fpsolve.spectral.bases.sectors import Sector
+from fpsolve.spectral.eigen.spectrum import spectrum
 from fpsolve.studies.arguments import series_of
+from fpsolve.studies.recipe import recipe
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -10,18 +10,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve._checks import check_finite, check_noise, check_positive
+from fpsolve._support.checks import check_finite, check_noise, check_positive
+from fpsolve._support.labels import to_json
 from fpsolve.errors import RunInterrupted
-from fpsolve.io.attributes import to_json
-from fpsolve.io.recipes import recipe
-from fpsolve.models import LayDownModel
+from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.potentials import Potential, QuadraticPotential
 from fpsolve.paths import GaussianLaw
-from fpsolve.potentials import Potential, QuadraticPotential
 from fpsolve.reduced.hydrodynamic.effective_potential import (
     EffectivePotential,
     slope_of,
 )
 from fpsolve.studies.arguments import names_of, series_of
+from fpsolve.studies.constants.poincare import require_confining
 from fpsolve.studies.limits.large_noise_cases import (
     PARTS,
     deviation_of,
@@ -29,8 +29,8 @@ from fpsolve.studies.limits.large_noise_cases import (
     resolution_for,
 )
 from fpsolve.studies.limits.large_noise_dataset import large_noise_dataset
-from fpsolve.studies.rates.poincare import require_confining
-from fpsolve.studies.rates.sweep import SweepProgress, sweep
+from fpsolve.studies.recipe import recipe
+from fpsolve.studies.sweeps.sweep import SweepProgress, sweep
 
 if TYPE_CHECKING:
     import xarray as xr

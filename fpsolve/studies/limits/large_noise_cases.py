@@ -10,25 +10,25 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve import diagnostics, initial
-from fpsolve.curves import Curve, FixedBelt, MovingBelt
-from fpsolve.grids import PhaseSpaceGrid
-from fpsolve.models import LayDownModel
+from fpsolve.density.schemes import drift_kick
+from fpsolve.density.solve import solve
+from fpsolve.density.steady_state import steady_state
+from fpsolve.density.suggestions import box_half_widths, feature_width_of
+from fpsolve.grids import diagnostics, initial
+from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.model.curves import Curve, FixedBelt, MovingBelt
+from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.potentials import Potential, QuadraticPotential
+from fpsolve.model.potentials.nodes import gibbs_nodes
 from fpsolve.paths import GaussianLaw
-from fpsolve.potentials import Potential, QuadraticPotential
-from fpsolve.potentials.nodes import gibbs_nodes
 from fpsolve.reduced.hydrodynamic import HydrodynamicLimit
-from fpsolve.schemes import drift_kick
-from fpsolve.solve import solve
-from fpsolve.spectral.gap import spectral_gap
-from fpsolve.spectral.steady import spectral_steady_state
-from fpsolve.steady_state import steady_state
+from fpsolve.spectral.eigen.gap import spectral_gap
+from fpsolve.spectral.evolution.steady import spectral_steady_state
+from fpsolve.studies.constants.gap_expansion import next_gap_term
+from fpsolve.studies.constants.poincare import poincare_constant
 from fpsolve.studies.limits.balance import balanced_force
 from fpsolve.studies.limits.distances import distances
-from fpsolve.studies.limits.gap_expansion import next_gap_term
 from fpsolve.studies.limits.plane_limit import stationary_limit, transient_limit
-from fpsolve.studies.rates.poincare import poincare_constant
-from fpsolve.suggestions import box_half_widths, feature_width_of
 
 __all__ = ["PARTS", "Resolution", "deviation_of", "large_noise_case", "resolution_for"]
 

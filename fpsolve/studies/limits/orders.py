@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.stats import linregress
 
-from fpsolve._arrays import check_finite_numbers, check_numbers
+from fpsolve._support.arrays import check_finite_numbers, check_numbers
 
 __all__ = ["FittedOrder", "fitted_order", "observed_orders"]
 

@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import i0e, i1e
 
-from fpsolve.grids import PhaseSpaceGrid
-from fpsolve.models import LayDownModel
+from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.grids.plane import PlaneGrid
+from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.potentials import QuadraticPotential
 from fpsolve.paths import GaussianLaw
-from fpsolve.planes import PlaneGrid
-from fpsolve.potentials import QuadraticPotential
 from fpsolve.reduced.hydrodynamic import HydrodynamicLimit, OrnsteinUhlenbeckLimit
 
 __all__ = ["Approximation", "stationary_limit", "transient_limit"]

@@ -9,16 +9,21 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve._checks import check_finite, check_integer, check_noise, check_positive
+from fpsolve._support.checks import (
+    check_finite,
+    check_integer,
+    check_noise,
+    check_positive,
+)
 from fpsolve.errors import RunInterrupted
-from fpsolve.io.recipes import recipe
+from fpsolve.model.potentials import Potential
 from fpsolve.paths import GaussianLaw
-from fpsolve.potentials import Potential
 from fpsolve.reduced.energy import EnergyProcess
 from fpsolve.studies.arguments import series_of
 from fpsolve.studies.limits.small_noise_case import small_noise_case
 from fpsolve.studies.limits.small_noise_dataset import small_noise_dataset
-from fpsolve.studies.rates.sweep import SweepProgress, sweep
+from fpsolve.studies.recipe import recipe
+from fpsolve.studies.sweeps.sweep import SweepProgress, sweep
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -8,15 +8,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve import initial
-from fpsolve.curves import FixedBelt, MovingBelt
-from fpsolve.grids import PhaseSpaceGrid
-from fpsolve.models import LayDownModel
+from fpsolve.density.schemes import drift_kick
+from fpsolve.density.solve import solve
+from fpsolve.grids import initial
+from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.model.curves import FixedBelt, MovingBelt
+from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.potentials import Potential
 from fpsolve.paths import GaussianLaw, sample_paths
-from fpsolve.potentials import Potential
 from fpsolve.reduced.energy import EnergyProcess
-from fpsolve.schemes import drift_kick
-from fpsolve.solve import solve
 from fpsolve.studies.limits.energy_law import SmoothedLaw, energy_masses
 
 __all__ = ["half_width_for", "small_noise_case"]

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve.io.attributes import labels, made_with, to_json
-from fpsolve.potentials import Potential, potential_to_dict
+from fpsolve._support.labels import labels, made_with, to_json
+from fpsolve.model.potentials import Potential, potential_to_dict
 from fpsolve.studies.limits.energy_law import N_FUNCTIONS
 from fpsolve.studies.limits.orders import observed_orders
-from fpsolve.studies.rates.sweep import Case
+from fpsolve.studies.sweeps.sweep import Case
 
 if TYPE_CHECKING:
     import xarray as xr

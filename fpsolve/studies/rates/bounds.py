@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import brentq, minimize
 
-from fpsolve._checks import check_noise
-from fpsolve.potentials import LinearPotential, Potential, QuadraticPotential
-from fpsolve.studies.limits.gap_expansion import next_gap_term
-from fpsolve.studies.rates.poincare import poincare_constant, require_confining
+from fpsolve._support.checks import check_noise
+from fpsolve.model.potentials import LinearPotential, Potential, QuadraticPotential
+from fpsolve.studies.constants.gap_expansion import next_gap_term
+from fpsolve.studies.constants.poincare import poincare_constant, require_confining
 
 __all__ = [
     "HypocoerciveBound",

@@ -10,13 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fpsolve.errors import MemoryLimitError, ToleranceError
-from fpsolve.models import LayDownModel
-from fpsolve.potentials import Potential
-from fpsolve.spectral.essential import asymptotic_slope
-from fpsolve.spectral.evolution import spectral_solve
-from fpsolve.spectral.gap import spectral_gap
-from fpsolve.spectral.sectors import Sector
-from fpsolve.spectral.spectrum import Spectrum, spectrum
+from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.potentials import Potential
+from fpsolve.spectral.bases.essential import asymptotic_slope
+from fpsolve.spectral.bases.sectors import Sector
+from fpsolve.spectral.eigen.gap import spectral_gap
+from fpsolve.spectral.eigen.spectrum import Spectrum, spectrum
+from fpsolve.spectral.evolution.evolution import spectral_solve
 from fpsolve.studies.observables import Observable, equilibrium_moments
 from fpsolve.studies.rates.poisson import asymptotic_variances
 from fpsolve.studies.rates.relaxation import plan_relaxation, relaxation_case

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import nnls
 
-from fpsolve.io.attributes import labels, made_with, to_json
-from fpsolve.potentials import Potential, potential_to_dict
+from fpsolve._support.labels import labels, made_with, to_json
+from fpsolve.model.potentials import Potential, potential_to_dict
 from fpsolve.studies.rates.bounds import (
     averaging_bound,
     hypocoercive_bound,
@@ -20,12 +20,12 @@ from fpsolve.studies.rates.bounds import (
 )
 from fpsolve.studies.rates.cases import PARTS, sectors_shown
 from fpsolve.studies.rates.modes import CLASSES
-from fpsolve.studies.rates.sweep import Case
+from fpsolve.studies.sweeps.sweep import Case
 
 if TYPE_CHECKING:
     import xarray as xr
 
-    from fpsolve.spectral.spectrum import Spectrum
+    from fpsolve.spectral.eigen.spectrum import Spectrum
 
 __all__ = ["rates_dataset", "spectrum_dataset", "theory_curves"]
 

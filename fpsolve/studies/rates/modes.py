@@ -15,8 +15,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve.grids import PhaseSpaceGrid
-from fpsolve.models import LayDownModel
+from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.model.laydown import LayDownModel
 
 __all__ = ["CLASSES", "SlowestMode", "slowest_modes"]
 

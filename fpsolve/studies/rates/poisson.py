@@ -12,18 +12,18 @@ from numpy.typing import NDArray
 from scipy.sparse import block_array, csc_array
 from scipy.sparse.linalg import splu
 
-from fpsolve._blas import one_blas_thread
-from fpsolve.models import LayDownModel, check_model
-from fpsolve.potentials import QuadraticPotential
-from fpsolve.spectral.quadratic import checked_tolerance
-from fpsolve.spectral.radial import RadialDiscretisation
-from fpsolve.spectral.radial_basis import radial_basis
-from fpsolve.spectral.sectors import Sector, Truncation
-from fpsolve.spectral.tensor import (
+from fpsolve._support.blas import one_blas_thread
+from fpsolve.model.laydown import LayDownModel, check_model
+from fpsolve.model.potentials import QuadraticPotential
+from fpsolve.spectral.bases.radial import RadialDiscretisation
+from fpsolve.spectral.bases.radial_basis import radial_basis
+from fpsolve.spectral.bases.sectors import Sector, Truncation
+from fpsolve.spectral.bases.tensor import (
     TensorDiscretisation,
     TensorStates,
     hermite_functions,
 )
+from fpsolve.spectral.evolution.quadratic import checked_tolerance
 from fpsolve.studies.arguments import check_functions
 from fpsolve.studies.observables import Observable
 

@@ -10,20 +10,20 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve._checks import check_flag, check_positive
+from fpsolve._support.checks import check_flag, check_positive
 from fpsolve.errors import RunInterrupted
-from fpsolve.io.recipes import recipe
-from fpsolve.models import LayDownModel
+from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.potentials import Potential, QuadraticPotential
 from fpsolve.paths import GaussianLaw
-from fpsolve.potentials import Potential, QuadraticPotential
-from fpsolve.spectral.spectrum import check_tolerance
+from fpsolve.spectral.eigen.spectrum import check_tolerance
 from fpsolve.studies.arguments import check_functions, names_of, series_of
+from fpsolve.studies.constants.poincare import poincare_constant, require_confining
 from fpsolve.studies.observables import Observable, default_observables
 from fpsolve.studies.rates.bounds import checked_noise
 from fpsolve.studies.rates.cases import PARTS, rate_case
 from fpsolve.studies.rates.dataset import rates_dataset
-from fpsolve.studies.rates.poincare import poincare_constant, require_confining
-from fpsolve.studies.rates.sweep import SweepProgress, sweep
+from fpsolve.studies.recipe import recipe
+from fpsolve.studies.sweeps.sweep import SweepProgress, sweep
 
 if TYPE_CHECKING:
     import xarray as xr

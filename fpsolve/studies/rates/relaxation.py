@@ -11,16 +11,16 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicHermiteSpline
 
-from fpsolve.decay import DecayRate, fit_decay
-from fpsolve.grids import PhaseSpaceGrid
-from fpsolve.models import LayDownModel
-from fpsolve.potentials import Potential
-from fpsolve.schemes import drift_kick
-from fpsolve.solve import solve
+from fpsolve.density.schemes import drift_kick
+from fpsolve.density.solve import solve
+from fpsolve.density.suggestions import suggest_grid, suggest_step
+from fpsolve.evolution.decay import DecayRate, fit_decay
+from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.potentials import Potential
+from fpsolve.studies.constants.poincare import poincare_constant
 from fpsolve.studies.rates.modes import SlowestMode, relative_norm, slowest_modes
-from fpsolve.studies.rates.poincare import poincare_constant
 from fpsolve.studies.starts import density_and_law
-from fpsolve.suggestions import suggest_grid, suggest_step
 
 __all__ = ["Plan", "plan_relaxation", "relaxation_case"]
 

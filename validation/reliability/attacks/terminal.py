@@ -8,7 +8,7 @@ from typing import Any
 from typer.testing import CliRunner
 
 import fpsolve as fp
-from fpsolve.comparisons.reading import dataset_of, kind_of_dataset
+from fpsolve.results.compare.reading import dataset_of, kind_of_dataset
 
 __all__ = ["called", "check_files", "check_manners", "everything"]
 

@@ -1,0 +1,1 @@
+"""What every room uses and no formula names: checks, files, threads, labels."""

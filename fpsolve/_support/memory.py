@@ -1,0 +1,56 @@
+"""How much memory a run needs, and whether there is that much."""
+
+from __future__ import annotations
+
+import psutil
+
+from fpsolve._support.checks import check_tolerance
+from fpsolve.errors import MemoryLimitError
+
+__all__ = ["allowed_memory", "check_memory", "required_memory"]
+
+# Diagnostics, tables in one dimension less, and the interpreter's own buffers.
+OVERHEAD = 64 * 2**20
+
+
+def required_memory(
+    nbytes: int, n_arrays: float, n_saved: int, extrapolate: bool = False
+) -> int:
+    """Bytes of a run: arrays of the scheme and saved densities, plus an overhead.
+
+    Parameters
+    ----------
+    nbytes : int
+        Bytes of one density.
+    n_arrays : float
+        Densities the scheme keeps alive.
+    n_saved : int
+        Densities that are saved.
+    extrapolate : bool
+        Two runs keep their saved densities.
+    """
+    kept = n_saved * (2 if extrapolate else 1)
+    return int(nbytes * (n_arrays + kept)) + OVERHEAD
+
+
+def check_memory(required: int, limit: int | None = None, *remedy: str) -> None:
+    """Raise MemoryLimitError if `required` bytes are more than may be used.
+
+    Parameters
+    ----------
+    required : int
+    limit : int, optional
+        Bytes allowed; by default what the machine has available now.
+    *remedy : str
+        What takes less memory, when it is not a coarser grid.
+    """
+    available = allowed_memory(limit)
+    if not required <= available:
+        raise MemoryLimitError(required, int(available), *remedy)
+
+
+def allowed_memory(limit: float | None = None) -> float:
+    """Bytes that may be used: the limit, or what the machine has available now."""
+    if limit is None:
+        return float(psutil.virtual_memory().available)
+    return check_tolerance("memory_limit", limit, "; it is a number of bytes")

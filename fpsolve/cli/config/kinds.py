@@ -1,0 +1,209 @@
+"""The sections of a configuration file."""
+
+from __future__ import annotations
+
+import math
+import sys
+from typing import TYPE_CHECKING, ClassVar, Literal, TypeAlias
+
+from pydantic import model_validator
+
+from fpsolve._support.checks import check_tolerance
+from fpsolve.cli.config.sections import Section, one_of, section
+from fpsolve.density.schemes import drift_kick, semi_lagrangian
+from fpsolve.evolution.schedule import make_schedule
+from fpsolve.grids import initial
+from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.model.curves import (
+    EllipticNozzle,
+    FixedBelt,
+    MovingBelt,
+    OscillatingNozzle,
+    RotatingNozzle,
+    TabulatedCurve,
+)
+from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.potentials import (
+    FreePotential,
+    LinearPotential,
+    PowerPotential,
+    QuadraticPotential,
+)
+from fpsolve.model.process import Process
+
+__all__ = [
+    "CurveSection",
+    "GridSection",
+    "InitialSection",
+    "ModelSection",
+    "OutputSection",
+    "PotentialSection",
+    "ProcessSection",
+    "RunSection",
+    "SchemeSection",
+    "SpanSection",
+]
+
+_TOLERANCES = tuple(
+    f"{name}_tolerance"
+    for name in ("mass", "boundary", "negative", "entropy", "circulation")
+)
+_Numbers = tuple[float, ...]
+_Matrix = tuple[tuple[float, float], tuple[float, float]]
+
+if TYPE_CHECKING:
+    # The sections are made when this module is loaded; checkers know what they share.
+    PotentialSection: TypeAlias = Section
+    CurveSection: TypeAlias = Section
+    InitialSection: TypeAlias = Section
+    SchemeSection: TypeAlias = Section
+    ModelSection: TypeAlias = Section
+    GridSection: TypeAlias = Section
+    ProcessSection: TypeAlias = Section
+else:
+    PotentialSection = one_of(
+        *(
+            section(potential, potential.kind)
+            for potential in (
+                QuadraticPotential,
+                LinearPotential,
+                PowerPotential,
+                FreePotential,
+            )
+        )
+    )
+    CurveSection = one_of(
+        *(
+            section(curve, curve.kind)
+            for curve in (
+                FixedBelt,
+                MovingBelt,
+                RotatingNozzle,
+                OscillatingNozzle,
+                EllipticNozzle,
+            )
+        ),
+        section(
+            TabulatedCurve,
+            TabulatedCurve.kind,
+            {"s": _Numbers, "gamma1": _Numbers, "gamma2": _Numbers},
+        ),
+    )
+    InitialSection = one_of(
+        section(
+            initial.gaussian,
+            "gaussian",
+            {"variance": float | tuple[float, float] | _Matrix},
+        ),
+        section(initial.equilibrium, "equilibrium"),
+    )
+    SchemeSection = one_of(
+        section(drift_kick, "drift_kick"), section(semi_lagrangian, "semi_lagrangian")
+    )
+    ModelSection = section(LayDownModel)
+    GridSection = section(PhaseSpaceGrid)
+    ProcessSection = section(Process)
+
+
+class SpanSection(Section):
+    """How far to go from s = 0, in which steps, and where to keep what is found."""
+
+    s_end: float
+    ds: float | None = None
+    save_at: _Numbers | None = None
+    save_every: float | None = None
+
+    @model_validator(mode="after")
+    def _check_schedule(self) -> SpanSection:
+        if self.save_at is not None and self.save_every is not None:
+            raise ValueError(
+                "`save_at` and `save_every` must not both be given; remove one of them."
+            )
+        if self.save_every is not None and not 0 < self.save_every < math.inf:
+            raise ValueError(f"`save_every` must be positive, got {self.save_every:g}.")
+        if self.ds is None:
+            self._make_schedule(self.s_end, None)
+        else:
+            self.check_schedule(self.ds)
+        return self
+
+    def check_schedule(self, ds: float) -> None:
+        """Raise ValueError unless steps of ds fit the end and the saving points."""
+        self._make_schedule(ds, self.saves())
+
+    def saves(self) -> tuple[float, ...]:
+        """Return the arclengths at which the state is kept."""
+        if self.save_every is None:
+            return (self.s_end,) if self.save_at is None else self.save_at
+        n_saves = math.floor(self.s_end / self.save_every + 1e-9) + 1
+        saves = {k * self.save_every for k in range(n_saves)} | {self.s_end}
+        return tuple(sorted(saves))
+
+    def _make_schedule(self, ds: float, saves: _Numbers | None) -> None:
+        # No step is recorded, however many there are.
+        make_schedule((0.0, self.s_end), ds, saves, record_every=sys.maxsize)
+
+
+class RunSection(SpanSection):
+    """How far to run and what to keep; see `fpsolve.solve`.
+
+    `tolerance` is the L1 error at which a grid or a step that is not given aims.
+    """
+
+    record_every: int = 1
+    extrapolate: bool = False
+    tolerance: float = 1e-2
+    mass_tolerance: float | None = None
+    boundary_tolerance: float | None = None
+    negative_tolerance: float | None = None
+    entropy_tolerance: float | None = None
+    circulation_tolerance: float | None = None
+
+    def _make_schedule(self, ds: float, saves: _Numbers | None) -> None:
+        make_schedule((0.0, self.s_end), ds, saves, self.record_every)
+
+    @model_validator(mode="after")
+    def _check_tolerances(self) -> RunSection:
+        for name, value in self.tolerances().items():
+            check_tolerance(name, value)
+        return self
+
+    def tolerances(self) -> dict[str, float]:
+        """Return the tolerances of `fpsolve.solve` that are given, by their names."""
+        given = {name: getattr(self, name) for name in _TOLERANCES}
+        return {name: value for name, value in given.items() if value is not None}
+
+    def step(self, suggested: float) -> float:
+        """Return the largest step, suggested or below, that meets all saving points.
+
+        When none down to a tenth does, the span alone is divided.
+        """
+        fewest = math.ceil(self.s_end / suggested - 1e-9)
+        for n_steps in range(fewest, 10 * fewest):
+            places = [s * n_steps / self.s_end for s in self.saves()]
+            if all(abs(place - round(place)) < 1e-6 for place in places):
+                return self.s_end / n_steps
+        return self.s_end / fewest
+
+
+class OutputSection(Section):
+    """Names and kinds of the files written."""
+
+    name: str = "result"
+    format: Literal["netcdf", "zarr"] = "netcdf"
+    figures: bool = True
+
+    suffixes: ClassVar[dict[str, str]] = {"netcdf": ".nc", "zarr": ".zarr"}
+
+    @model_validator(mode="after")
+    def _check_name(self) -> OutputSection:
+        if not self.name or set(self.name) & set("/\\\0") or self.name[0] == ".":
+            raise ValueError(
+                f"`name` must be the name of a file without folders, got {self.name!r}."
+            )
+        return self
+
+    @property
+    def file_name(self) -> str:
+        """Name of the result file."""
+        return self.name + self.suffixes[self.format]

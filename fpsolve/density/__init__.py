@@ -1,0 +1,1 @@
+"""The grid solver: schemes, runs and what they leave, checkpoints, stationary densities."""

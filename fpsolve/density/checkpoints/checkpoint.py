@@ -1,0 +1,69 @@
+"""What a caller says about checkpoints: where, and how often."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from fpsolve._support.checks import check_path
+from fpsolve.density.checkpoints.every import Interval, parse_interval
+
+__all__ = ["Checkpoint", "as_checkpoint"]
+
+
+@dataclass(frozen=True)
+class Checkpoint:
+    """Where a run keeps what it needs to go on after a kill, and how often.
+
+    A checkpoint is written once in every interval, at a record; at the end; and
+    when Ctrl-C is pressed. Records and saved densities go to the folder as they come
+    and do not stay in memory.
+
+    Parameters
+    ----------
+    directory : str or os.PathLike
+        Folder, new or that of the same run, which then goes on.
+    every : int or str
+        Steps between two checkpoints, or a duration such as "30s", "5min" or "2h".
+        What a kill loses is at most that, or the way to the next record if longer.
+    notes : mapping of str, optional
+        Kept beside the description of the run.
+
+    Raises
+    ------
+    ValueError, TypeError
+        If `every` is not positive, or neither steps nor a duration, or `directory` no
+        path.
+    """
+
+    directory: str | os.PathLike[str]
+    every: int | str = "1min"
+    notes: Mapping[str, str] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        parse_interval(self.every)
+        check_path("directory", self.directory)
+
+    @property
+    def folder(self) -> Path:
+        """The folder as a path."""
+        return Path(self.directory)
+
+    @property
+    def interval(self) -> Interval:
+        """The interval in steps or seconds."""
+        return parse_interval(self.every)
+
+
+def as_checkpoint(checkpoint: Checkpoint | str | os.PathLike[str]) -> Checkpoint:
+    """Return a checkpoint for the folder that a path names, or the given one."""
+    if isinstance(checkpoint, Checkpoint):
+        return checkpoint
+    if not isinstance(checkpoint, str | os.PathLike):
+        raise TypeError(
+            f"`checkpoint` must be a Checkpoint or a path, got {checkpoint!r}; write "
+            "Checkpoint(folder, every=100)."
+        )
+    return Checkpoint(checkpoint)

@@ -1,0 +1,182 @@
+"""The folder of a checkpoint: made, checked against the run, and locked."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
+from fnmatch import fnmatch
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fpsolve._support.durable import DRAFT, sync
+from fpsolve._support.interrupts import deferred_interrupts
+from fpsolve._support.locks import LOCK, locked
+from fpsolve._support.provenance import versions
+from fpsolve.density.checkpoints.checkpoint import Checkpoint
+from fpsolve.density.checkpoints.keeper import CheckpointKeeper
+from fpsolve.density.checkpoints.manifest import MANIFEST, Manifest, read_manifest
+from fpsolve.density.checkpoints.snapshots import SnapshotFiles
+from fpsolve.density.checkpoints.start import START, write_start
+from fpsolve.density.checkpoints.store import PassStore
+from fpsolve.density.description import RunDescription
+from fpsolve.errors import CheckpointError, CheckpointMismatchError
+from fpsolve.evolution.schedule import Schedule
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+__all__ = ["CheckpointFolder", "opened_folder", "remove_folder"]
+
+Array = NDArray[np.float64]
+
+_STORE = "output.zarr"
+_TITLE = "Records and saved densities of a run of fpsolve that is not complete"
+# Patterns of what the folder holds while it has no `run.json`: it is being made, or
+# removed.
+_OWN = (LOCK, START, f"*{DRAFT}", "pass-?-?.npz", _STORE)
+# What zarr calls a file until it is complete.
+_PARTIAL = "*.partial"
+
+
+class CheckpointFolder:
+    """Hands out a keeper for every pass of the run."""
+
+    def __init__(
+        self,
+        checkpoint: Checkpoint,
+        run: RunDescription,
+        shape: tuple[int, ...],
+        raise_if_interrupted: Callable[[], None],
+    ) -> None:
+        self.checkpoint, self.run = checkpoint, run
+        self.shape, self.raise_if_interrupted = shape, raise_if_interrupted
+
+    def keeper(self, name: str, schedule: Schedule) -> CheckpointKeeper:
+        """Return what keeps the pass of that name."""
+        folder = self.checkpoint.folder
+        return CheckpointKeeper(
+            folder,
+            PassStore(
+                folder / _STORE / name,
+                len(schedule.records),
+                len(schedule.saves),
+                self.shape,
+            ),
+            SnapshotFiles(folder, name, self.run.digest),
+            self.checkpoint.interval,
+            self.raise_if_interrupted,
+        )
+
+
+@contextmanager
+def opened_folder(
+    checkpoint: Checkpoint, run: RunDescription, p0: Array, reference: Array | None
+) -> Iterator[CheckpointFolder]:
+    """Make the folder of a run, or open it if it is of the same run.
+
+    Raises
+    ------
+    CheckpointError
+        If it cannot be written, or another run is writing to it.
+    CheckpointMismatchError
+        If it is of another run.
+    ValueError
+        If it holds something else.
+    FileFormatError
+        If it cannot be read.
+    """
+    folder = checkpoint.folder
+    with ExitStack() as stack:
+        with _writing(folder):
+            _check_entries(folder)
+            _check_free(folder)
+            folder.mkdir(parents=True, exist_ok=True)
+            stack.enter_context(locked(folder))
+            if not (folder / MANIFEST).exists():
+                _make(checkpoint, run, p0, reference)
+        _check_same(folder, run)
+        interrupt = stack.enter_context(deferred_interrupts())
+        yield CheckpointFolder(checkpoint, run, p0.shape, interrupt)
+
+
+def _check_entries(folder: Path) -> None:
+    """Raise ValueError if something in it is neither file nor folder.
+
+    Writing to it would reach something else, or wait.
+    """
+    for path in folder.iterdir() if folder.is_dir() else ():
+        if not (path.is_file() or path.is_dir()):
+            raise ValueError(
+                f"`checkpoint` must be a folder of files, got `{folder}`, in which "
+                f"`{path.name}` is none; remove it, or name another folder."
+            )
+
+
+def _check_free(folder: Path) -> None:
+    if not folder.is_dir() or (folder / MANIFEST).exists():
+        return
+    others = [path.name for path in sorted(folder.iterdir()) if not _is_own(path)]
+    if others:
+        raise ValueError(
+            f"`checkpoint` must be a new folder or a checkpoint, got `{folder}`, which "
+            f"holds `{others[0]}`; name another."
+        )
+
+
+def remove_folder(folder: Path) -> None:
+    """Remove the folder of a checkpoint whose result is written."""
+    # First, so that a kill in between does not leave a damaged checkpoint.
+    (folder / MANIFEST).unlink()
+    shutil.rmtree(folder)
+
+
+def _is_own(path: Path) -> bool:
+    return any(fnmatch(path.name, pattern) for pattern in _OWN)
+
+
+def _make(
+    checkpoint: Checkpoint, run: RunDescription, p0: Array, reference: Array | None
+) -> None:
+    import zarr
+
+    folder = checkpoint.folder
+    for path in folder.iterdir():
+        if path.name == _STORE:
+            shutil.rmtree(path)
+        elif path.name != LOCK:
+            path.unlink()
+    store = zarr.create_group(folder / _STORE, attributes={"title": _TITLE})
+    for name in ("pass-1", "pass-2") if run.arguments["extrapolate"] else ("pass-1",):
+        store.create_group(name)
+    for path in [*(folder / _STORE).rglob("zarr.json"), folder / _STORE]:
+        sync(path)
+    write_start(folder, p0, reference)
+    # Last: with it the folder becomes a checkpoint.
+    Manifest(run, checkpoint.every, checkpoint.notes, versions()).write(folder)
+    sync(folder.absolute().parent)
+
+
+def _check_same(folder: Path, run: RunDescription) -> None:
+    manifest = read_manifest(folder)
+    differences = manifest.run.differences(run)
+    if differences:
+        raise CheckpointMismatchError(folder, differences)
+    manifest.warn_of_other_versions(folder)
+    for path in [*folder.glob("*" + DRAFT), *(folder / _STORE).rglob(_PARTIAL)]:
+        path.unlink(missing_ok=True)
+
+
+@contextmanager
+def _writing(folder: Path) -> Iterator[None]:
+    try:
+        yield
+    except OSError as error:
+        raise CheckpointError(
+            error.filename or folder,
+            error.strerror or str(error),
+            "nothing was computed; name a folder that can be written to",
+        ) from error

@@ -1,0 +1,180 @@
+"""Keeps what a pass records on the disk, and where it can go on."""
+
+from __future__ import annotations
+
+import time
+import warnings
+from bisect import bisect_right
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fpsolve.density.checkpoints.every import Interval
+from fpsolve.density.checkpoints.snapshots import Snapshot, SnapshotFiles, fields_of
+from fpsolve.density.checkpoints.store import PassStore, rows_to_array
+from fpsolve.errors import CheckpointError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from fpsolve.density.run import Run
+
+__all__ = ["CheckpointKeeper"]
+
+Array = NDArray[np.float64]
+
+
+class CheckpointKeeper:
+    """One pass of a run with checkpoints; see `fpsolve.keeping.MemoryKeeper`.
+
+    Data first, then the snapshot that refers to them: at every instant the newest
+    snapshot on the disk finds all that it counts.
+
+    Parameters
+    ----------
+    folder : Path
+        That of the checkpoint.
+    store : PassStore
+    files : SnapshotFiles
+    interval : Interval
+    raise_if_interrupted : callable
+        Raises KeyboardInterrupt if Ctrl-C was pressed.
+    """
+
+    def __init__(
+        self,
+        folder: Path,
+        store: PassStore,
+        files: SnapshotFiles,
+        interval: Interval,
+        raise_if_interrupted: Callable[[], None],
+    ) -> None:
+        self.folder, self.store, self.files = folder, store, files
+        self.interval, self.raise_if_interrupted = interval, raise_if_interrupted
+        self.kept: Snapshot | None = None
+        self.kept_at = time.monotonic()
+
+    @property
+    def n_saved(self) -> int:
+        """Densities saved so far."""
+        return self.store.n_saved
+
+    def begin(self, run: Run) -> int | None:
+        """Take a pass to its last good checkpoint; the step there, or None."""
+        for snapshot in self.files.read():
+            if self.store.holds(snapshot.n_saved, snapshot.n_stored):
+                self._restore(run, snapshot)
+                return snapshot.step
+            warnings.warn(
+                f"checkpoint `{self.files.newest}` is not used: output that belongs to "
+                f"it is missing or damaged in `{self.store.folder}`",
+                UserWarning,
+                stacklevel=2,
+            )
+        self.files.clear()
+        self.store.continue_from(0, 0)
+        return None
+
+    def save(self, p: Array) -> None:
+        """Append a density to the store."""
+        with self._writing(self.store.folder / "density"):
+            self.store.save(p)
+
+    def absorb(self, rows: list[dict[str, float]]) -> None:
+        """Append full chunks of rows to the store and drop them from the list."""
+        with self._writing(self.store.folder / "series"):
+            self.store.absorb(rows)
+
+    def after(self, run: Run) -> None:
+        """Write a checkpoint if one is due, and heed Ctrl-C."""
+        self.raise_if_interrupted()
+        last = self.kept.step if self.kept else 0
+        seconds = time.monotonic() - self.kept_at
+        records = run.schedule.records
+        place = bisect_right(records, run.step)
+        # The end of a pass is not waited for here: `finish` writes it.
+        ahead = records[place] - last if place < len(records) else 0
+        if self.interval.over(ahead, seconds):
+            self._write(run)
+
+    def finish(self, run: Run) -> None:
+        """Write the checkpoint of a complete pass, unless it is there."""
+        if self.kept is None or self.kept.step != run.step:
+            with self._writing(self.store.folder / "series"):
+                self.store.absorb(run.recorder.rows, complete=True)
+            self._write(run)
+
+    def interrupted(self, run: Run) -> str:
+        """Write a last checkpoint; say how to go on."""
+        if run.settled and (self.kept is None or self.kept.step != run.step):
+            try:
+                self._write(run)
+            except CheckpointError as error:
+                return f"; {error}"
+        return f"; `fpsolve resume {self.folder}` goes on"
+
+    def series(
+        self, columns: tuple[str, ...], rows: list[dict[str, float]]
+    ) -> dict[str, Array]:
+        """All records as arrays."""
+        # Damage makes zarr raise whatever it comes across.
+        try:
+            return self.store.series(columns, rows)
+        except Exception as error:
+            reason = f"it is damaged ({' '.join(str(error).split()).rstrip('.')})"
+            raise CheckpointError(
+                self.store.folder / "series", reason, self._remedy(), action="read"
+            ) from error
+
+    def densities(self) -> Any:
+        """The saved densities, read when they are asked for."""
+        return self.store.densities()
+
+    def _restore(self, run: Run, snapshot: Snapshot) -> None:
+        self.store.continue_from(snapshot.n_saved, snapshot.n_stored)
+        snapshot.restore(run.state)
+        columns = snapshot.columns
+        run.recorder.first = dict(zip(columns, snapshot.first.tolist(), strict=True))
+        run.recorder.rows = [
+            dict(zip(columns, row, strict=True)) for row in snapshot.tail.tolist()
+        ]
+        run.watch.add(*snapshot.seconds)
+        self.kept = snapshot
+
+    def _write(self, run: Run) -> None:
+        recorder = run.recorder
+        columns = tuple(recorder.first)
+        snapshot = Snapshot(
+            step=run.step,
+            s=run.schedule.s(run.step),
+            n_saved=self.store.n_saved,
+            n_stored=self.store.n_stored,
+            seconds=run.watch.seconds(),
+            columns=columns,
+            first=rows_to_array([recorder.first], columns)[0],
+            tail=rows_to_array(recorder.rows, columns),
+            state=fields_of(run.state),
+        )
+        with self._writing(self.files.next_path):
+            self.store.synchronise()
+            self.files.write(snapshot)
+        self.kept, self.kept_at = snapshot, time.monotonic()
+        self.kept.state.clear()
+
+    @contextmanager
+    def _writing(self, path: Path) -> Iterator[None]:
+        try:
+            yield
+        except OSError as error:
+            reason = error.strerror or str(error)
+            raise CheckpointError(path, reason, self._remedy()) from error
+
+    def _remedy(self) -> str:
+        again = f"see to it, then go on with `fpsolve resume {self.folder}`"
+        if self.kept is None:
+            return f"no earlier one of this pass is there; {again}"
+        return f"the last good one, at s = {self.kept.s:g}, is kept; {again}"

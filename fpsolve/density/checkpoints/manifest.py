@@ -1,0 +1,140 @@
+"""run.json: which run a checkpoint is of, written once, when its folder is made."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import warnings
+from collections.abc import Mapping
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import IO, Any
+
+from fpsolve._support.durable import write_durably
+from fpsolve._support.json_text import bounded_json
+from fpsolve._support.provenance import versions
+from fpsolve.density.description import RunDescription
+from fpsolve.errors import FileFormatError
+
+__all__ = ["FORMAT", "MANIFEST", "Manifest", "read_manifest"]
+
+# Number of the layout of the folder; raised whenever an older version could misread it.
+FORMAT = 1
+MANIFEST = "run.json"
+_ABOUT = "Checkpoint of a run of fpsolve. Go on with `fpsolve resume FOLDER`."
+_NEEDED = ("run", "digest", "every", "notes", "versions")
+
+
+@dataclass(frozen=True)
+class Manifest:
+    """The run, how often its checkpoints are written, and the caller's notes."""
+
+    run: RunDescription
+    every: int | str
+    notes: Mapping[str, str]
+    versions: Mapping[str, str]
+
+    def write(self, folder: Path) -> None:
+        """Write it; from then on the folder is a checkpoint."""
+        content = {
+            "about": _ABOUT,
+            "fpsolve_checkpoint": FORMAT,
+            "date": datetime.now(UTC).isoformat(timespec="seconds"),
+            "versions": dict(self.versions),
+            "every": self.every,
+            "digest": self.run.digest,
+            "run": self.run.to_dict(),
+            "notes": dict(self.notes),
+        }
+        content["checksum"] = _checksum(content)
+        text = json.dumps(content, indent=1, ensure_ascii=False)
+
+        def write(file: IO[bytes]) -> None:
+            file.write(text.encode())
+
+        write_durably(folder / MANIFEST, write)
+
+    def warn_of_other_versions(self, folder: Path) -> None:
+        """Warn if the run began with other versions: bits may differ from here on."""
+        now = versions()
+        other = [
+            f"{name} {old}, now {now[name]}"
+            for name, old in self.versions.items()
+            if name in now and now[name] != old
+        ]
+        if other:
+            warnings.warn(
+                f"checkpoint `{folder}` was begun with {'; '.join(other)}: the result "
+                "may differ in its last bits from an uninterrupted run",
+                UserWarning,
+                stacklevel=4,
+            )
+
+
+def read_manifest(folder: Path) -> Manifest:
+    """Return what run.json says.
+
+    Raises
+    ------
+    FileNotFoundError
+        If there is no such folder.
+    FileFormatError
+        If it is not a checkpoint, of a newer layout, or changed by hand.
+    """
+    path = folder / MANIFEST
+    if not folder.exists():
+        raise FileNotFoundError(
+            f"`directory` must be the folder of a checkpoint, got `{folder}`, which "
+            "does not exist."
+        )
+    if not path.is_file():
+        raise FileFormatError(
+            folder, f"it is not a checkpoint of fpsolve (it holds no `{MANIFEST}`)"
+        )
+    try:
+        content = bounded_json(MANIFEST, path.read_text(encoding="utf-8"))
+        written = int(content["fpsolve_checkpoint"])
+    except (ValueError, KeyError, TypeError, OverflowError):
+        raise FileFormatError(path, "it does not describe a checkpoint") from None
+    if written > FORMAT:
+        raise FileFormatError(
+            path,
+            f"it has layout {written}, this version of fpsolve reads up to {FORMAT}; "
+            "update fpsolve",
+        )
+    return _checked(path, content)
+
+
+def _checked(path: Path, content: Mapping[str, Any]) -> Manifest:
+    missing = [f"`{name}`" for name in _NEEDED if name not in content]
+    if missing:
+        raise FileFormatError(path, f"{', '.join(missing)} is missing in it")
+    try:
+        run = RunDescription.from_dict(content["run"])
+    except TypeError:
+        raise FileFormatError(path, "its `run` is not that of a run") from None
+    _check_types(path, run, content)
+    manifest = Manifest(run, content["every"], content["notes"], content["versions"])
+    if run.digest != content["digest"]:
+        raise FileFormatError(path, "its `run` was changed after it was written")
+    # Older versions wrote none.
+    if content.get("checksum", _checksum(content)) != _checksum(content):
+        raise FileFormatError(path, "it was changed after it was written")
+    return manifest
+
+
+def _check_types(path: Path, run: RunDescription, content: Mapping[str, Any]) -> None:
+    tables = run.to_dict() | {name: content[name] for name in ("notes", "versions")}
+    for name, table in tables.items():
+        if not isinstance(table, dict):
+            raise FileFormatError(path, f"its `{name}` must be a table")
+    if not isinstance(content["every"], int | str):
+        raise FileFormatError(path, "its `every` must be a number or text")
+
+
+def _checksum(content: Mapping[str, Any]) -> str:
+    """Return the SHA-256 of all entries but this one."""
+    covered = {name: one for name, one in content.items() if name != "checksum"}
+    text = json.dumps(covered, sort_keys=True, ensure_ascii=False)
+    return hashlib.sha256(text.encode()).hexdigest()

@@ -1,0 +1,213 @@
+"""The state of a pass at a record, in two files that are written in turn."""
+
+from __future__ import annotations
+
+import json
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import IO, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fpsolve._support.durable import opened_npz, write_durably
+from fpsolve._support.json_text import bounded_json
+from fpsolve.density.schemes.form import State
+
+__all__ = ["Snapshot", "SnapshotFiles"]
+
+Array = NDArray[np.float64]
+
+_SLOTS = ("a", "b")
+# Scratch of the next step, and nothing before it.
+_NOT_KEPT = ("work", "scratch")
+# Prefix of the arrays of a state among the members of a file.
+_ARRAY = "state_"
+
+
+@dataclass(frozen=True)
+class Snapshot:
+    """Where a pass is, and what belongs to it.
+
+    Attributes
+    ----------
+    step : int
+        Steps done; a recorded one.
+    s : float
+    n_saved, n_stored : int
+        Densities and rows that belong to it in the store; what is beyond is not
+        part of this checkpoint.
+    seconds : (float, float)
+        Wall and CPU time spent so far.
+    columns : tuple of str
+        Names of the recorded quantities.
+    first, tail : ndarray, shapes (n_columns,) and (n, n_columns)
+        The first record, and those that are not in the store.
+    state : dict
+        Fields of the scheme's state.
+    """
+
+    step: int
+    s: float
+    n_saved: int
+    n_stored: int
+    seconds: tuple[float, float]
+    columns: tuple[str, ...]
+    first: Array
+    tail: Array
+    state: dict[str, Any]
+
+    def restore(self, state: State) -> None:
+        """Give a state these values."""
+        for name, value in self.state.items():
+            setattr(state, name, value)
+
+
+def fields_of(state: State) -> dict[str, Any]:
+    """Everything in a state that the next step depends on."""
+    return {
+        field.name: getattr(state, field.name)
+        for field in fields(state)
+        if field.name not in _NOT_KEPT
+    }
+
+
+class SnapshotFiles:
+    """The two files of a pass: the newest checkpoint and the one before it.
+
+    Each is an .npz, whose members carry a checksum, and is renamed to its place when
+    it is on the disk. The newer one is never touched while the next is written.
+
+    Parameters
+    ----------
+    folder : Path
+    name : str
+        Name of the pass.
+    run : str
+        Digest of the run that the files must belong to.
+    """
+
+    def __init__(self, folder: Path, name: str, run: str) -> None:
+        self.paths = [folder / f"{name}-{slot}.npz" for slot in _SLOTS]
+        self.run = run
+        self.number, self.newest = 0, self.paths[1]
+
+    @property
+    def next_path(self) -> Path:
+        """The file that the next snapshot takes the place of."""
+        return self.paths[1 - self.paths.index(self.newest)]
+
+    def write(self, snapshot: Snapshot) -> None:
+        """Write a snapshot in the place of the older one."""
+        path = self.next_path
+        kept = {
+            name: value
+            for name, value in vars(snapshot).items()
+            if name not in ("state", "first", "tail")
+        }
+        plain, arrays = _split(snapshot.state)
+        about = {
+            **kept,
+            "state": plain,
+            "arrays": list(arrays),
+            "run": self.run,
+            "number": self.number + 1,
+        }
+        members: dict[str, Any] = {
+            "about": np.array(json.dumps(about)),
+            "first": snapshot.first,
+            "tail": snapshot.tail,
+            **{_ARRAY + name: values for name, values in arrays.items()},
+        }
+
+        def write(file: IO[bytes]) -> None:
+            np.savez(file, **members)
+
+        write_durably(path, write)
+        self.number, self.newest = self.number + 1, path
+
+    def read(self) -> Iterator[Snapshot]:
+        """Yield what can be read, the newest first; damage is a warning.
+
+        The run goes on from the one that is taken last: the other file is written
+        next.
+        """
+        for number, path in sorted(self._numbers(), reverse=True):
+            with _told(path):
+                snapshot = self._read(path)
+                self.number, self.newest = number, path
+                yield snapshot
+
+    def clear(self) -> None:
+        """Remove both: the pass begins anew."""
+        for path in self.paths:
+            path.unlink(missing_ok=True)
+        self.number, self.newest = 0, self.paths[1]
+
+    def reached(self) -> tuple[int, float] | None:
+        """Step and arclength of the newest one, without reading its arrays."""
+        found = [(about["number"], about) for about, _ in self._abouts()]
+        if not found:
+            return None
+        newest = max(found, key=lambda entry: entry[0])[1]
+        return newest["step"], newest["s"]
+
+    def _numbers(self) -> Iterator[tuple[int, Path]]:
+        return ((about["number"], path) for about, path in self._abouts())
+
+    def _abouts(self) -> Iterator[tuple[dict[str, Any], Path]]:
+        for path in self.paths:
+            if path.exists():
+                with _told(path):
+                    yield self._about(path), path
+
+    def _about(self, path: Path) -> dict[str, Any]:
+        with opened_npz(path) as members:
+            about = bounded_json("about", str(members["about"]))
+        numbers = [about[name] for name in ("number", "step", "s")]
+        if not all(isinstance(one, int | float) for one in numbers):
+            raise ValueError("it does not say where it is")
+        return dict(about)
+
+    def _read(self, path: Path) -> Snapshot:
+        with opened_npz(path) as members:
+            about = bounded_json("about", str(members["about"]))
+            if about.pop("run") != self.run:
+                raise ValueError("it belongs to another run")
+            del about["number"]
+            state = about.pop("state")
+            for name in about.pop("arrays"):
+                state[name] = members[_ARRAY + name]
+            about["columns"] = tuple(about["columns"])
+            about["seconds"] = tuple(about["seconds"])
+            return Snapshot(
+                first=members["first"], tail=members["tail"], state=state, **about
+            )
+
+
+@contextmanager
+def _told(path: Path) -> Iterator[None]:
+    """Turn damage into a warning."""
+    # It makes zipfile, json and numpy raise whatever they come across.
+    try:
+        yield
+    except Exception as error:
+        reason = str(error).rstrip(".") or type(error).__name__
+        message = f"checkpoint `{path}` is damaged and not used: {reason}"
+    else:
+        return
+    warnings.warn(message, UserWarning, stacklevel=2)
+
+
+def _split(state: dict[str, Any]) -> tuple[dict[str, Any], dict[str, Array]]:
+    """Separate numbers from arrays."""
+    arrays = {name: v for name, v in state.items() if isinstance(v, np.ndarray)}
+    plain = {name: v for name, v in state.items() if name not in arrays}
+    return {name: _plain(value) for name, value in plain.items()}, arrays
+
+
+def _plain(value: Any) -> Any:
+    return value.item() if isinstance(value, np.generic) else value

@@ -1,0 +1,208 @@
+"""One pass of a run: the loop, its checks and its records."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fpsolve._support.progress import ProgressCallback
+from fpsolve._support.provenance import Stopwatch
+from fpsolve.density.description import describe_scheme
+from fpsolve.density.recorder import Recorder
+from fpsolve.density.solution import Solution
+from fpsolve.errors import (
+    CirculationError,
+    DomainTooSmallError,
+    EntropyRiseError,
+    MassDriftError,
+    NegativeDensityError,
+    NonFiniteDensityError,
+    RunError,
+    RunInterrupted,
+)
+from fpsolve.evolution.schedule import Schedule
+
+if TYPE_CHECKING:
+    from fpsolve.density.checkpoints.keeper import CheckpointKeeper
+    from fpsolve.density.keeper import MemoryKeeper
+    from fpsolve.density.solve import Scheme, Tolerances
+
+__all__ = ["Run", "check_laws"]
+
+Array = NDArray[np.float64]
+
+
+class Run:
+    """One pass over a schedule.
+
+    Attributes
+    ----------
+    step : int
+        Steps done at the last record.
+    settled : bool
+        Whether the state is that of the last record: between two it is not.
+    """
+
+    def __init__(
+        self,
+        scheme: Scheme,
+        p0: Array,
+        reference: Array | None,
+        tolerances: Tolerances,
+        arguments: dict[str, Any],
+        schedule: Schedule,
+        keeper: MemoryKeeper | CheckpointKeeper,
+    ) -> None:
+        self.scheme, self.schedule = scheme, schedule
+        self.recorder = Recorder(scheme.model, scheme.grid, reference)
+        self.tolerances, self.keeper = tolerances, keeper
+        self.p0, self.reference, self.arguments = p0, reference, arguments
+        self.state = scheme.start(p0)
+        self.saves = frozenset(schedule.saves)
+        self.step, self.settled = 0, False
+        self.watch = Stopwatch()
+
+    def complete(
+        self,
+        report: ProgressCallback,
+        n_before: int,
+        n_total: int,
+        fallback: Solution | None = None,
+    ) -> Solution:
+        """Run to the end; what stops it leaves with the partial solution.
+
+        With extrapolation the finished run at ds is the `fallback`: it is what is
+        left when the one at ds/2 stops.
+        """
+        try:
+            self._begin()
+            report(n_before + self.step, n_total, self.schedule.s(self.step))
+            for first, last in self._legs():
+                self._advance(first, last)
+                report(n_before + last, n_total, self.schedule.s(last))
+                self.keeper.after(self)
+            self.keeper.finish(self)
+        except RunError as error:
+            error.solution = self._partial("failed", str(error), fallback)
+            raise
+        except KeyboardInterrupt:
+            message = "stopped by the user" + self.keeper.interrupted(self)
+            partial = self._partial("interrupted", message, fallback)
+            raise RunInterrupted(partial) from None
+        return self._solution("finished", "")
+
+    def _begin(self) -> None:
+        """Record the start, or go to where the run was left."""
+        reached = self.keeper.begin(self)
+        if reached is None:
+            self._record(0)
+        else:
+            self.step = reached
+            kept = self.keeper.series(self.recorder.columns, self.recorder.rows)
+            self.recorder.go_on(kept)
+        self.settled = True
+
+    def _legs(self) -> Iterator[tuple[int, int]]:
+        """The legs that are left."""
+        reached = self.step
+        return (leg for leg in self.schedule.legs() if leg[0] >= reached)
+
+    def _advance(self, first: int, last: int) -> None:
+        self.settled = False
+        s = self.schedule.s(first)
+        self.scheme.advance(self.state, s, self.schedule.ds, last - first)
+        self._record(last)
+        self.step, self.settled = last, True
+
+    def _record(self, step: int) -> None:
+        s = self.schedule.s(step)
+        p = self.scheme.density(self.state)
+        extra = {"mass_correction": self.state.correction}
+        if self.state.theta is not None:
+            extra["theta"] = self.state.theta
+        self._check_finite(p, s)
+        values = self.recorder.record(p, s, **extra)
+        if step in self.saves:
+            self.keeper.save(p)
+        self._check(values)
+        self.keeper.absorb(self.recorder.rows)
+
+    def _check_finite(self, p: Array, s: float) -> None:
+        # A sum is finite unless a cell is not, or the values are about to overflow.
+        if not math.isfinite(float(p.sum())):
+            bad = np.argwhere(~np.isfinite(p))
+            index = bad[0] if len(bad) else np.unravel_index(np.argmax(p), p.shape)
+            raise NonFiniteDensityError(s, tuple(int(i) for i in index))
+
+    def _check(self, values: dict[str, float]) -> None:
+        s = values["s"]
+        drift = values["mass"] / self.recorder.first["mass"] - 1.0
+        allowed = self.tolerances
+        if not abs(drift) <= allowed.mass:
+            raise MassDriftError(s, drift, allowed.mass)
+        if not abs(self.state.correction) <= self.scheme.correction_limit:
+            raise MassDriftError(s, self.state.correction, self.scheme.correction_limit)
+        negative = values["negative_mass"] / values["mass"]
+        if not negative <= allowed.negative:
+            raise NegativeDensityError(s, negative, allowed.negative)
+        if not values["boundary_mass"] <= allowed.boundary:
+            raise DomainTooSmallError(
+                values["boundary_mass"],
+                self.scheme.grid.half_width,
+                s,
+                allowed.boundary,
+            )
+        check_laws(values, allowed)
+
+    def _partial(
+        self, status: str, message: str, fallback: Solution | None
+    ) -> Solution:
+        if fallback is None:
+            return self._solution(status, message)
+        message += " (in the run at ds/2: this is the one at ds, not extrapolated)"
+        return replace(fallback, status=status, message=message)
+
+    def _solution(self, status: str, message: str) -> Solution:
+        recorder, saves = self.recorder, self.schedule.saves[: self.keeper.n_saved]
+        return Solution(
+            model=self.scheme.model,
+            grid=self.scheme.grid,
+            scheme=describe_scheme(self.scheme),
+            ds=self.schedule.ds,
+            series=self.keeper.series(recorder.columns, recorder.rows),
+            saved_s=np.array([self.schedule.s(step) for step in saves]),
+            densities=self.keeper.densities(),
+            entropy_floor=recorder.floor(),
+            status=status,
+            message=message,
+            provenance={
+                **self.watch.provenance(self.state.n_steps),
+                "run": self.arguments,
+            },
+            initial_density=self._kept_start(),
+            reference=self.reference,
+        )
+
+    def _kept_start(self) -> Array:
+        """p0, which the caller's array may not be for long."""
+        # No step follows, so that the scratch array is free: a copy costs no memory.
+        if self.state.work.shape != self.p0.shape:
+            return self.p0.copy()
+        self.state.work[...] = self.p0
+        return self.state.work
+
+
+def check_laws(values: Mapping[str, float], allowed: Tolerances) -> None:
+    """Raise if a record breaks what holds on a belt at rest; see `Recorder`."""
+    rise = values.get("entropy_rise", 0.0)
+    # An infinite tolerance asks not to be told, not even of NaN.
+    if not (rise <= allowed.entropy or math.isinf(allowed.entropy)):
+        raise EntropyRiseError(values["s"], rise, allowed.entropy)
+    deviation = values.get("circulation_deviation", 0.0)
+    if not (abs(deviation) <= allowed.circulation or math.isinf(allowed.circulation)):
+        raise CirculationError(values["s"], deviation, allowed.circulation)

@@ -1,0 +1,39 @@
+"""Schemes from the dictionaries that describe them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from fpsolve.density.description import CODE
+from fpsolve.density.schemes import drift_kick, semi_lagrangian
+from fpsolve.density.solve import Scheme
+from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.model.laydown import LayDownModel
+
+__all__ = ["scheme_from_dict"]
+
+_MAKERS: dict[str, Any] = {"drift_kick": drift_kick, "semi_lagrangian": semi_lagrangian}
+
+
+def scheme_from_dict(
+    description: Mapping[str, Any], model: LayDownModel, grid: PhaseSpaceGrid
+) -> Scheme:
+    """Return the scheme that `describe_scheme` described.
+
+    Raises
+    ------
+    ValueError
+        If it is none of fpsolve.
+    """
+    name = description["name"]
+    if CODE in description:
+        raise ValueError(
+            f"`scheme` must be one of fpsolve, got a class of your own that calls "
+            f"itself {name!r}."
+        )
+    if name not in _MAKERS:
+        known = ", ".join(repr(one) for one in _MAKERS)
+        raise ValueError(f"`scheme` must be one of {known}, got {name!r}.")
+    scheme: Scheme = _MAKERS[name](model, grid, **description["options"])
+    return scheme

@@ -1,0 +1,260 @@
+"""Evolve a density: its arguments, checked, and the one or two passes of a run."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable, Mapping
+from contextlib import AbstractContextManager, nullcontext
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING, Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fpsolve._kernels.threads import threads_worth_their_wait
+from fpsolve._support.blas import one_blas_thread
+from fpsolve._support.checks import check_flag, check_tolerance, shown
+from fpsolve._support.memory import check_memory, required_memory
+from fpsolve._support.progress import ProgressCallback, reporting
+from fpsolve._support.provenance import announced_compilation
+from fpsolve.density.description import RunDescription, run_arguments
+from fpsolve.density.keeper import MemoryKeepers
+from fpsolve.density.run import Run
+from fpsolve.density.schemes.form import State
+from fpsolve.density.solution import Solution
+from fpsolve.evolution.extrapolation import extrapolated
+from fpsolve.evolution.schedule import Schedule, checked_stops, make_schedule
+from fpsolve.grids.diagnostics import checked_reference
+from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.model.laydown import LayDownModel
+
+if TYPE_CHECKING:
+    from fpsolve.density.checkpoints import Checkpoint
+    from fpsolve.density.checkpoints.folder import CheckpointFolder
+
+__all__ = ["Scheme", "solve"]
+
+Array = NDArray[np.float64]
+
+
+class Scheme(Protocol):
+    """What `solve` needs of a scheme; see docs/extending.md."""
+
+    name: str
+    order: int
+    model: LayDownModel
+    grid: PhaseSpaceGrid
+    correction_limit: float
+
+    @property
+    def options(self) -> dict[str, Any]: ...  # noqa: D102
+    @property
+    def n_arrays(self) -> float: ...  # noqa: D102
+    def start(self, p0: Array) -> State: ...  # noqa: D102
+    def density(self, state: State) -> Array: ...  # noqa: D102
+    def advance(self, state: State, s: float, ds: float, n_steps: int = 1) -> None: ...  # noqa: D102
+
+
+@one_blas_thread()
+def solve(
+    scheme: Scheme,
+    p0: Array,
+    s_span: tuple[float, float],
+    ds: float,
+    *,
+    save_at: Iterable[float] | None = None,
+    extrapolate: bool = False,
+    progress: bool | ProgressCallback = False,
+    mass_tolerance: float = 1e-10,
+    boundary_tolerance: float = 1e-3,
+    negative_tolerance: float = 0.2,
+    entropy_tolerance: float = 0.1,
+    circulation_tolerance: float = 0.05,
+    reference: Array | None = None,
+    record_every: int = 1,
+    memory_limit: int | None = None,
+    checkpoint: Checkpoint | str | os.PathLike[str] | None = None,
+) -> Solution:
+    """Density p(ξ, α, s) of equation (7) from p0, with its entropy at every step.
+
+    Nothing a run has computed is lost: every error raised while it runs, and the
+    `RunInterrupted` that Ctrl-C becomes, carries what was recorded as `.solution`.
+
+    Parameters
+    ----------
+    scheme : Scheme
+        From `drift_kick` or `semi_lagrangian`.
+    p0 : ndarray, shape (n1, n2, n_alpha)
+        Initial density.
+    s_span : (float, float)
+        Arclength at the start and at the end.
+    ds : float
+        Step; must divide the span. `suggest_step` proposes one.
+    save_at : iterable of float, optional
+        Where to keep the density; by default at the end.
+    extrapolate : bool
+        Run with ds and ds/2, combine both to cancel the leading error in ds
+        (Richardson) and attach error estimates for everything that is returned.
+    progress : bool or callable
+        Show a bar, or call with (steps done, steps in all, s).
+    mass_tolerance : float
+        Largest relative drift of the mass.
+    boundary_tolerance : float
+        Largest share of mass in the outermost cells.
+    negative_tolerance : float
+        Largest ∫ max(−p, 0), relative to the mass. Undershoot of a few percent is
+        what high-order interpolation leaves beside fronts.
+    entropy_tolerance : float
+        Largest rise of H(p|p_S) above an earlier value on a belt at rest, where it can
+        only fall.
+    circulation_tolerance : float
+        Largest deviation of E G/max|G|, G = e^{−B} (ξ₁ sin α − ξ₂ cos α), from its
+        exact law e^{−A²s/2}, for isotropic B on a belt at rest. The L1 error of the
+        density is at least that.
+    reference : ndarray, optional
+        Density the entropy is relative to; p_S by default.
+    record_every : int
+        Steps between two records. Steps in between are cheaper: neighbouring half
+        steps merge.
+    memory_limit : int, optional
+        Bytes the run may use; by default what is available.
+    checkpoint : Checkpoint or path, optional
+        Folder in which the run keeps what it needs to go on after a kill, by default
+        every minute. If it holds a checkpoint of the same run, that one goes on: the
+        result is bitwise that of an uninterrupted run. Records and saved densities
+        are then on the disk, and `densities` of the result are read from the folder
+        when they are asked for: keep it as long as you use them. See `resume`.
+
+    Returns
+    -------
+    Solution
+
+    Raises
+    ------
+    ValueError, GridMismatchError, MemoryLimitError
+        Before the run: bad arguments, p0 on another grid, too large a run.
+    NonFiniteDensityError, MassDriftError, NegativeDensityError, DomainTooSmallError
+        During the run, each with its numbers and the partial solution; so is
+        `MassCorrectionError` of the semi-Lagrangian scheme.
+    EntropyRiseError, CirculationError
+        Likewise, where a run on a belt at rest breaks a law of the equation.
+    CheckpointMismatchError
+        If the folder holds the checkpoint of another run; names every difference.
+    CheckpointError
+        If a checkpoint cannot be written. The last good one is kept.
+
+    References
+    ----------
+    [KMW09]_, equations (7) and (11); extrapolation as in [Ric11]_.
+    """
+    p0 = checked_start(checked_scheme(scheme), p0)
+    extrapolate = check_flag("extrapolate", extrapolate)
+    if reference is not None:
+        reference = checked_reference(reference, scheme.grid)
+    allowed = {
+        "mass_tolerance": mass_tolerance,
+        "boundary_tolerance": boundary_tolerance,
+        "negative_tolerance": negative_tolerance,
+        "entropy_tolerance": entropy_tolerance,
+        "circulation_tolerance": circulation_tolerance,
+    }
+    tolerances = Tolerances(*allowed.values())
+    save_at = None if save_at is None else tuple(checked_stops(save_at))
+    schedule = make_schedule(s_span, ds, save_at, record_every)
+    scheme.model.curve.check_span(schedule.start, schedule.end)
+    # Two for writing, where saved densities do not stay. The first of two passes
+    # leaves its initial density.
+    n_kept = len(schedule.saves) if checkpoint is None else 2
+    required = required_memory(
+        scheme.grid.nbytes, scheme.n_arrays + float(extrapolate), n_kept, extrapolate
+    )
+    check_memory(required, memory_limit)
+    arguments = run_arguments(
+        s_span, ds, save_at, record_every=record_every, extrapolate=extrapolate,
+        **allowed,
+    )  # fmt: skip
+    with (
+        threads_worth_their_wait(p0.size),
+        _keepers(checkpoint, scheme, p0, reference, arguments) as keepers,
+        reporting(progress) as report,
+        announced_compilation(bool(progress)),
+    ):
+        begin = partial(Run, scheme, p0, reference, tolerances, arguments)
+        return _completed(begin, keepers, schedule, extrapolate, report)
+
+
+def _completed(
+    begin: Callable[..., Run],
+    keepers: MemoryKeepers | CheckpointFolder,
+    schedule: Schedule,
+    extrapolate: bool,
+    report: ProgressCallback,
+) -> Solution:
+    """The one pass of a run, or both combined."""
+    passes = [schedule, schedule.refined()] if extrapolate else [schedule]
+    n_total, n_before = sum(one.n_steps for one in passes), 0
+    found: list[Solution] = []
+    for number, one in enumerate(passes, start=1):
+        run = begin(one, keepers.keeper(f"pass-{number}", one))
+        found.append(run.complete(report, n_before, n_total, *found))
+        n_before += one.n_steps
+    if not extrapolate:
+        return found[0]
+    coarse, fine = found
+    return extrapolated(coarse, fine, run.scheme.order)
+
+
+def _keepers(
+    checkpoint: Checkpoint | str | os.PathLike[str] | None,
+    scheme: Scheme,
+    p0: Array,
+    reference: Array | None,
+    arguments: Mapping[str, Any],
+) -> AbstractContextManager[MemoryKeepers | CheckpointFolder]:
+    """What hands out the keepers of the passes."""
+    if checkpoint is None:
+        return nullcontext(MemoryKeepers(scheme.grid.shape))
+    from fpsolve.density.checkpoints.checkpoint import as_checkpoint
+    from fpsolve.density.checkpoints.folder import opened_folder
+
+    run = RunDescription.of(scheme, p0, reference, arguments)
+    return opened_folder(as_checkpoint(checkpoint), run, p0, reference)
+
+
+@dataclass(frozen=True)
+class Tolerances:
+    """What a run puts up with before it stops."""
+
+    mass: float
+    boundary: float
+    negative: float
+    entropy: float = 0.1
+    circulation: float = 0.05
+
+    def __post_init__(self) -> None:
+        for name, value in vars(self).items():
+            check_tolerance(f"{name}_tolerance", value)
+
+
+def checked_scheme(scheme: Any, name: str = "scheme") -> Scheme:
+    """The scheme; TypeError unless it has what `solve` needs."""
+    needed = ("model", "grid", "start", "density", "advance")
+    if isinstance(scheme, type) or not all(hasattr(scheme, name) for name in needed):
+        raise TypeError(
+            f"`{name}` must be a scheme, got {shown(scheme)}; make one by "
+            "drift_kick(model, grid)."
+        )
+    made: Scheme = scheme
+    return made
+
+
+def checked_start(scheme: Scheme, p0: Array) -> Array:
+    """The initial density if it fits the scheme's grid and is finite with mass."""
+    p0 = scheme.grid.check(p0, "p0")
+    if not np.isfinite(p0).all():
+        index = tuple(int(i) for i in np.argwhere(~np.isfinite(p0))[0])
+        raise ValueError(f"`p0` must be finite, got {p0[index]:g} at index {index}.")
+    if not p0.sum() > 0:
+        raise ValueError(f"`p0` must have positive mass, got {p0.sum():g}.")
+    return p0

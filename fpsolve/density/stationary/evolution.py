@@ -1,0 +1,119 @@
+"""A density over a stride of arclength, with one step length or several combined."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fpsolve._kernels.threads import threads_worth_their_wait
+from fpsolve.density.schemes import DriftKick
+from fpsolve.density.schemes.form import State
+from fpsolve.density.solve import Scheme
+
+__all__ = ["Evolution", "Strides"]
+
+Array = NDArray[np.float64]
+
+# One application of the map covers about this arclength: long enough for the slow
+# modes to move, short enough that the fast ones cost few steps.
+STRIDE = 1.0
+# Steps of a stride relative to the longest.
+DIVISORS = (1, 2, 3)
+
+
+class Evolution:
+    """The density evolved over a stride, as a map for a Krylov solver.
+
+    Parameters
+    ----------
+    scheme : Scheme
+    ds : float
+    divisor : int
+        Make this many steps of ds/divisor for every one of ds.
+    """
+
+    def __init__(self, scheme: Scheme, ds: float, divisor: int = 1) -> None:
+        self.scheme, self.ds = scheme, ds / divisor
+        self.n_steps = divisor * max(1, round(STRIDE / ds))
+        self.n_applications = 0
+
+    @property
+    def stride(self) -> float:
+        """The arclength of one application."""
+        return self.n_steps * self.ds
+
+    def __call__(self, p: Array) -> Array:
+        """Evolve p over the stride."""
+        self.n_applications += 1
+        with threads_worth_their_wait(p.size):
+            state: State = self.scheme.start(p)
+            self.scheme.advance(state, 0.0, self.ds, self.n_steps)
+            return self.scheme.density(state).copy()
+
+
+class Strides:
+    """The same stride with ds, ds/2 and ds/3, and what they say together (Neville).
+
+    The error of the palindrome has even powers of ds only; a combination of the three
+    is left with ds⁶.
+
+    Parameters
+    ----------
+    scheme : DriftKick
+    ds : float
+    extrapolate : bool
+        Whether `answer` is the combination, or the stride with ds alone.
+    """
+
+    def __init__(self, scheme: DriftKick, ds: float, extrapolate: bool = True) -> None:
+        self.extrapolate = extrapolate
+        self.evolutions = [Evolution(scheme, ds, j) for j in DIVISORS]
+
+    @property
+    def n_applications(self) -> int:
+        """Strides evolved."""
+        return sum(one.n_applications for one in self.evolutions)
+
+    @property
+    def longest(self) -> Evolution:
+        """The stride with ds."""
+        return self.evolutions[0]
+
+    def __call__(self, p: Array) -> list[Array]:
+        """p after the stride, by every step length."""
+        return [evolution(p) for evolution in self.evolutions]
+
+    def answer(self, images: Sequence[Array]) -> Array:
+        """The stride whose stationary density is looked for."""
+        return self._combined(images, 0) if self.extrapolate else images[0]
+
+    def step_error(self, images: Sequence[Array]) -> Array:
+        """What the answer does over a stride that another does not.
+
+        The other is the combination without the longest step, which is less accurate;
+        with ds alone the combination of all, which is more.
+        """
+        other = 1 if self.extrapolate else 0
+        return self.answer(images) - self._combined(images, other)
+
+    def splitting(self, images: Sequence[Array]) -> Array:
+        """What the stride with ds alone does that the combination of all does not."""
+        return images[0] - self._combined(images, 0)
+
+    def _combined(self, images: Sequence[Array], first: int) -> Array:
+        weights = extrapolation_weights(DIVISORS[first:])
+        total = np.zeros_like(images[0])
+        for weight, image in zip(weights, images[first:], strict=True):
+            total += weight * image
+        return total
+
+
+def extrapolation_weights(divisors: Sequence[int]) -> list[float]:
+    """w_j with Σ w_j = 1 and Σ w_j j^{−2m} = 0 for m = 1, …: no such powers of ds."""
+    squares = [float(j) ** 2 for j in divisors]
+    return [
+        float(np.prod([one / (one - other) for other in squares if other != one]))
+        for one in squares
+    ]

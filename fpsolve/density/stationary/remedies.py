@@ -1,0 +1,71 @@
+"""What would make a stationary density accurate enough, in numbers."""
+
+from __future__ import annotations
+
+import math
+
+from fpsolve.density.stationary.result import SteadyState
+from fpsolve.density.stationary.start import concentration_of
+from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.model.laydown import LayDownModel
+
+__all__ = ["remedy"]
+
+# Orders in which the number of cells is extrapolated.
+LOWEST, HIGHEST = 1.0, 12.0
+# Share of the tolerance that a part may have after what is proposed.
+SHARE = 0.4
+WIDENING, WIDEST = 1.02, 8.0
+
+
+def remedy(result: SteadyState, tolerance: float, order: float) -> str:
+    """Advice for every part of the error that is too large."""
+    goal = SHARE * tolerance
+    advice = []
+    widening = 1.0
+    if result.errors["box"] > goal:
+        widening = wider(result.model, result.grid, result.errors["box"] / goal)
+    finer = 1.0
+    # What comes back over the edge of a box that is too small is rough on any grid.
+    if result.errors["grid"] > max(goal, result.errors["box"]):
+        power = 1.0 / min(max(order, LOWEST), HIGHEST)
+        finer = (result.errors["grid"] / goal) ** power
+    if max(widening, finer) > 1.0:
+        advice.append(
+            f"a grid of about {proposed(result.grid, widening, finer)} would do"
+        )
+    if max(result.errors["step"], result.errors.get("scheme", 0.0)) > goal:
+        advice.append(f"shorten `ds` = {result.ds:.3g}, or leave it out")
+    return "; ".join(advice) or "`tolerance` is too large"
+
+
+def proposed(grid: PhaseSpaceGrid, widening: float, finer: float) -> str:
+    """The grid in words: half widths, and even numbers of cells as dense as needed."""
+    half1, half2 = (widening * half for half in grid.half_widths)
+    n1, n2 = (2 * math.ceil(widening * finer * n / 2) for n in grid.shape[:2])
+    n_alpha = 4 * math.ceil(finer * grid.shape[2] / 4)
+    return f"half widths ({half1:.3g}, {half2:.3g}) and ({n1}, {n2}, {n_alpha}) cells"
+
+
+def wider(model: LayDownModel | None, grid: PhaseSpaceGrid, excess: float) -> float:
+    """Factor of the half widths at which e^{−B} on the belt has fallen by `excess`."""
+    if model is None:
+        return WIDEST
+    velocity = model.curve.velocity(0.0)
+    speed = math.hypot(float(velocity[0]), float(velocity[1]))
+    pull = 0.5 * model.noise**2 * concentration_of(speed)
+    directions = [(-float(one) / speed if speed else 0.0) for one in velocity]
+
+    def lowest(factor: float) -> float:
+        half1, half2 = (factor * half for half in grid.half_widths)
+        edges = ((half1, 0.0), (-half1, 0.0), (0.0, half2), (0.0, -half2))
+        return min(
+            float(model.potential.value(x, y))
+            - pull * (directions[0] * x + directions[1] * y)
+            for x, y in edges
+        )
+
+    needed, factor = lowest(1.0) + math.log(excess), 1.0
+    while lowest(factor) < needed and factor < WIDEST:
+        factor *= WIDENING
+    return factor

@@ -1,0 +1,55 @@
+"""Where to begin: the density of the limit of large noise."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import brentq
+from scipy.special import i0e, i1e
+
+from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.model.laydown import LayDownModel
+
+__all__ = ["concentration_of", "start_on"]
+
+Array = NDArray[np.float64]
+
+
+def concentration_of(speed: float) -> float:
+    """k with I₁(k)/I₀(k) = v: angles von Mises with it balance a belt of speed v."""
+    if speed == 0.0:
+        return 0.0
+    # I₁/I₀ lies above 1 − 1/(2k) − 1/(2k²): at this k it is beyond v.
+    largest = 2.0 / (1.0 - speed)
+
+    def excess(k: float) -> float:
+        return float(i1e(k) / i0e(k)) - speed
+
+    return float(brentq(excess, 0.0, largest, xtol=2e-12 * speed))
+
+
+def start_on(grid: PhaseSpaceGrid, model: LayDownModel) -> Array:
+    """exp(−B + f e·ξ − k e·τ)/c, where −γ′ = v e and f = A²k/2.
+
+    For large noise the belt is a force; the mean force and direction are then exact.
+
+    Parameters
+    ----------
+    grid : PhaseSpaceGrid
+    model : LayDownModel
+        On a belt of constant speed.
+    """
+    velocity1, velocity2 = (float(one) for one in model.curve.velocity(0.0))
+    speed = math.hypot(velocity1, velocity2)
+    k = concentration_of(speed)
+    towards = (-velocity1 / speed, -velocity2 / speed)
+    force = 0.5 * model.noise**2 * k
+    xi1, xi2 = grid.plane()
+    exponent = force * (towards[0] * xi1 + towards[1] * xi2)
+    plane = exponent - model.potential.value(xi1, xi2)
+    along = towards[0] * np.cos(grid.alpha) + towards[1] * np.sin(grid.alpha)
+    p = np.exp(plane - plane.max())[:, :, None] * np.exp(-k * (along + 1.0))
+    normalised: Array = p / (float(p.sum()) * grid.cell_volume)
+    return np.ascontiguousarray(normalised)

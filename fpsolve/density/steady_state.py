@@ -1,0 +1,261 @@
+"""Stationary densities: explicit on a fixed belt, by Krylov iteration otherwise."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fpsolve._support.blas import one_blas_thread
+from fpsolve._support.checks import check_flag, check_tolerance
+from fpsolve.density.schemes import DriftKick, drift_kick
+from fpsolve.density.solve import Scheme, checked_scheme
+from fpsolve.density.stationary.at_rest import at_rest
+from fpsolve.density.stationary.estimates import (
+    DENSITY,
+    box_error,
+    field_error,
+    scaled,
+    signed_error,
+    total,
+)
+from fpsolve.density.stationary.iteration import Stationary, settled, stationary
+from fpsolve.density.stationary.other_schemes import judged, own_density
+from fpsolve.density.stationary.refinement import Refined, refined
+from fpsolve.density.stationary.remedies import remedy
+from fpsolve.density.stationary.requirements import check_stationary, checked_step
+from fpsolve.density.stationary.result import SteadyState
+from fpsolve.density.suggestions import suggest_step
+from fpsolve.errors import DomainTooSmallError, ToleranceError
+from fpsolve.grids import diagnostics
+from fpsolve.grids.phase_space import PhaseSpaceGrid, check_grid
+from fpsolve.model.laydown import LayDownModel
+
+__all__ = ["SteadyState", "steady_state"]
+
+Array = NDArray[np.float64]
+
+# High order costs next to nothing beside the angle step.
+INTERPOLATION_ORDER = 12
+# Error of one run at the first step, before three step lengths are combined; and
+# A² ds of it, within which they have an asymptotic law.
+FIRST_ERROR, LARGEST_TURN = 0.05, 1.5
+# Share of the tolerance for the step; the grid takes the most.
+STEP_SHARE = 0.2
+# Above, an estimate is no more than a sign that nothing is resolved.
+WORTHLESS = 0.1
+# The combination that a single step length is compared with has an error, too.
+COMPARED = 1.25
+
+
+@one_blas_thread()
+def steady_state(
+    model: LayDownModel | Scheme,
+    grid: PhaseSpaceGrid | None = None,
+    *,
+    ds: float | None = None,
+    tolerance: float = 1e-9,
+    extrapolate: bool = False,
+    boundary_tolerance: float = 1e-3,
+    error_tolerance: float = 1e-4,
+) -> SteadyState:
+    """Density with L* p = 0 on the grid, with its error in L1.
+
+    On a fixed belt it is p_S = c e^{−B} (10), whatever the noise. On a belt of
+    constant speed v it is the fixed point of an evolution over about a unit of
+    arclength, extrapolated from three step lengths, found by a recycled Krylov
+    iteration on half of the cells, three quarters, and all. Conserved: mass. Steps are
+    shortened until their error is a fifth of `error_tolerance`; the cells and the box
+    are as given, so that their errors can only be estimated: compare `errors`.
+
+    Parameters
+    ----------
+    model : LayDownModel or Scheme
+        A model on a moving belt is solved with `drift_kick(model, grid,
+        interpolation_order=12)`. A scheme must be linear (not `positive`, not
+        limited). Of another than `drift_kick`, and of p/p_S, the density is that of
+        one step as it is, and its error is told by its distance from the density of
+        the model.
+    grid : PhaseSpaceGrid
+        May be left out for a scheme, which has one.
+    ds : float, optional
+        A step to use as it is, however large its error; ds alone unless `extrapolate`.
+    tolerance : float
+        Residual to reach.
+    extrapolate : bool
+        With `ds`, or another scheme than `drift_kick`: combine ds with ds/2, and with
+        ds/3 if that is `drift_kick`.
+    boundary_tolerance : float
+        Largest share of mass in the outermost cells.
+    error_tolerance : float
+        Error in L1 above which the result comes with a warning.
+
+    Raises
+    ------
+    ValueError
+        If there is no unique stationary density: a rotating or oscillating nozzle, a
+        potential that does not confine, no noise, a linear potential too weak for the
+        belt; for a scheme that is not linear; or for fewer than 6 cells in a
+        direction on a moving belt.
+    SteadyStateError
+        If the residual stays above `tolerance`.
+    DomainTooSmallError
+        If the box cuts the density off.
+    ToleranceError
+        If the error is estimated above 0.1 (and above `error_tolerance`): the grid
+        does not resolve the density.
+
+    Warns
+    -----
+    UserWarning
+        If the error is estimated above `error_tolerance`, with its parts and with the
+        grid that would do.
+
+    References
+    ----------
+    [KMW09]_, section 3.1.1, equation (10); section 3.1.2 for the moving belt.
+    """
+    scheme = scheme_for(model, grid)
+    check_stationary(scheme.model)
+    request = Request(
+        None if ds is None else checked_step(ds),
+        check_tolerance("tolerance", tolerance),
+        check_flag("extrapolate", extrapolate),
+        check_tolerance("error_tolerance", error_tolerance),
+    )
+    boundary_tolerance = check_tolerance("boundary_tolerance", boundary_tolerance)
+    if scheme.model.curve.fixed:
+        result, order = at_rest(scheme, request.ds or first_step(scheme)), 2.0
+    elif isinstance(scheme, DriftKick) and not scheme.balanced:
+        result, order = by_palindrome(scheme, request)
+    else:
+        result, order = by_scheme(scheme, request)
+    check_boundary(result, boundary_tolerance, request.error_tolerance, order)
+    check_error(result, request.error_tolerance, order)
+    return result
+
+
+@dataclass(frozen=True)
+class Request:
+    """The arguments of `steady_state`, checked."""
+
+    ds: float | None
+    tolerance: float
+    extrapolate: bool
+    error_tolerance: float
+
+
+def by_palindrome(scheme: DriftKick, request: Request) -> tuple[SteadyState, float]:
+    """On coarser grids first; with the order at which their densities converge."""
+    goal = STEP_SHARE * min(request.error_tolerance, WORTHLESS)
+
+    def solver(here: DriftKick, start: Array, ds: float) -> Stationary:
+        # The residual matters on the finest grid only.
+        residual = request.tolerance if here.grid == scheme.grid else math.inf
+        if request.ds is None:
+            return settled(here, ds, start, goal, residual)
+        return stationary(here, ds, start, goal, residual, request.extrapolate)
+
+    found = refined(scheme, request.ds or first_step(scheme), solver)
+    combined = request.extrapolate or request.ds is None
+    return with_errors(scheme, found, combined), found.order
+
+
+def by_scheme(scheme: Scheme, request: Request) -> tuple[SteadyState, float]:
+    """The scheme's own density, compared with that of the palindrome."""
+    palindrome = scheme_for(scheme.model, scheme.grid)
+    assert isinstance(palindrome, DriftKick)
+    reference, order = by_palindrome(palindrome, replace(request, ds=None))
+    ds = request.ds or float(suggest_step(scheme.model, scheme.grid))
+    own = own_density(scheme, ds, request.tolerance, request.extrapolate)
+    return judged(scheme, own, reference), order
+
+
+def first_step(scheme: Scheme) -> float:
+    """A step that is long, but within the law of its error."""
+    ds = float(suggest_step(scheme.model, scheme.grid, FIRST_ERROR))
+    turn = LARGEST_TURN / max(scheme.model.noise, 1e-3) ** 2
+    return min(ds, 1.0 / math.ceil(1.0 / turn))
+
+
+def scheme_for(model: LayDownModel | Scheme, grid: PhaseSpaceGrid | None) -> Scheme:
+    """The scheme to iterate, checked."""
+    if isinstance(model, LayDownModel):
+        if grid is None:
+            raise TypeError("`grid` is needed with a model; pass a PhaseSpaceGrid.")
+        check_grid(grid)
+        # On a belt p/p_S grows without bound along it.
+        return drift_kick(
+            model, grid, balanced=model.curve.fixed and model.potential.normalisable,
+            interpolation_order=INTERPOLATION_ORDER,
+        )  # fmt: skip
+    checked_scheme(model, "model")
+    if grid is not None and grid != model.grid:
+        raise ValueError(f"`grid` must be the scheme's own {model.grid}, got {grid}.")
+    for option in ("positive", "limited"):
+        if model.options.get(option):
+            raise ValueError(
+                f"`scheme` must be linear, got one with {option}=True; leave it out."
+            )
+    return model
+
+
+def with_errors(scheme: Scheme, found: Refined, extrapolated: bool) -> SteadyState:
+    """The density on the finest grid with all parts of its error."""
+    p, grid = found.finest.density, scheme.grid
+    step = field_error(found.finest.step, p, grid)
+    parts: Mapping[str, Mapping[str, float]] = {
+        "step": step if extrapolated else scaled(step, COMPARED),
+        "grid": field_error(found.grid_error, p, grid),
+        "box": box_error(p, grid),
+        "iteration": field_error(found.finest.iteration, p, grid),
+    }
+    errors = total(parts)
+    return SteadyState(
+        density=p,
+        residual=found.finest.residual,
+        grid=grid,
+        ds=found.finest.ds,
+        n_applications=found.n_applications,
+        error=errors.pop(DENSITY),
+        errors={name: part[DENSITY] for name, part in parts.items()},
+        moment_errors=errors,
+        splitting=signed_error(found.finest.splitting, p, grid),
+        extrapolated=extrapolated,
+        model=scheme.model,
+    )
+
+
+def check_boundary(
+    result: SteadyState, boundary_tolerance: float, tolerance: float, order: float
+) -> None:
+    """Raise if there is mass at the edge: the box cuts it off, or it is but noise."""
+    share = diagnostics.boundary_mass(result.density, result.grid)
+    if share <= boundary_tolerance:
+        return
+    if result.errors["grid"] > max(result.errors["box"], WORTHLESS):
+        raise ToleranceError(result.error, tolerance, remedy(result, tolerance, order))
+    raise DomainTooSmallError(
+        share, result.grid.half_width, tolerance=boundary_tolerance
+    )
+
+
+def check_error(result: SteadyState, tolerance: float, order: float) -> None:
+    """Warn above the tolerance; ToleranceError where nothing is resolved."""
+    if result.error <= tolerance:
+        return
+    advice = remedy(result, tolerance, order)
+    if not result.error <= max(WORTHLESS, tolerance):
+        raise ToleranceError(result.error, tolerance, advice)
+    parts = ", ".join(f"{name} {size:.1g}" for name, size in result.errors.items())
+    warnings.warn(
+        f"the stationary density has an L1 error of about {result.error:.1g} "
+        f"({parts}), above `error_tolerance` = {tolerance:g}; {advice}, or raise "
+        "`error_tolerance` if this is enough.",
+        UserWarning,
+        stacklevel=4,
+    )

@@ -1,0 +1,1 @@
+"""What every evolution in arclength has: steps, series, stored densities, rates."""

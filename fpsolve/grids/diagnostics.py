@@ -1,0 +1,276 @@
+"""What is read off a density p[i, j, k]: mass, entropy, marginals, moments."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fpsolve._support.arrays import check_finite_numbers, check_numbers
+from fpsolve._support.checks import check_non_negative, check_one_of
+from fpsolve.errors import GridMismatchError
+from fpsolve.grids.phase_space import PhaseSpaceGrid, check_grid
+from fpsolve.grids.row_sums import SMALLEST, RowFunctionals, inverse_of
+
+__all__ = [
+    "boundary_mass",
+    "entropy_dissipation",
+    "entropy_floor",
+    "l1_distance",
+    "marginal",
+    "mass",
+    "moments",
+    "negative_mass",
+    "relative_entropy",
+]
+
+Array = NDArray[np.float64]
+
+CELLS_PER_SLAB = 32768
+# Staggered weights of order eight, from the nearest pair outward.
+DIFFERENCE = (1225 / 1024, -245 / 3072, 49 / 5120, -5 / 7168)
+MIDPOINT = (1225 / 2048, -245 / 2048, 49 / 2048, -5 / 2048)
+
+
+def mass(p: Array, grid: PhaseSpaceGrid) -> float:
+    """∫ p dξ dα by the midpoint rule, one for a probability density.
+
+    Parameters
+    ----------
+    p : ndarray, shape (n1, n2, n_alpha)
+    grid : PhaseSpaceGrid
+    """
+    return float(checked(p, grid).sum()) * grid.cell_volume
+
+
+def boundary_mass(p: Array, grid: PhaseSpaceGrid) -> float:
+    """Share of ∫ |p| dξ dα in the outermost layer of cells of the ξ box.
+
+    The box is periodic, so what arrives there re-enters on the other side: a run is
+    meaningful as long as this number is negligible.
+
+    Parameters
+    ----------
+    p : ndarray, shape (n1, n2, n_alpha)
+    grid : PhaseSpaceGrid
+    """
+    return ring_share(np.abs(checked(p, grid)).sum(axis=2))
+
+
+def ring_share(plane: Array) -> float:
+    """Share of a sum over the plane that lies in its outermost cells."""
+    sides = plane[0].sum() + plane[-1].sum()
+    ends = plane[1:-1, 0].sum() + plane[1:-1, -1].sum()
+    return float((sides + ends) / plane.sum())
+
+
+def negative_mass(p: Array, grid: PhaseSpaceGrid) -> float:
+    """∫ max(−p, 0) dξ dα: how much of a density is unphysical undershoot.
+
+    Parameters
+    ----------
+    p : ndarray, shape (n1, n2, n_alpha)
+    grid : PhaseSpaceGrid
+    """
+    return float(np.maximum(-checked(p, grid), 0.0).sum()) * grid.cell_volume
+
+
+def marginal(p: Array, grid: PhaseSpaceGrid, which: str = "xi") -> Array:
+    """∫ p over the other variables, a density of those that are named.
+
+    Parameters
+    ----------
+    p : ndarray, shape (n1, n2, n_alpha)
+    grid : PhaseSpaceGrid
+    which : str
+        "xi", "alpha", "xi1" or "xi2".
+
+    Returns
+    -------
+    ndarray, shape (n1, n2), (n_alpha,), (n1,) or (n2,)
+    """
+    d1, d2, d_alpha = grid.spacing
+    integrals = {
+        "xi": ((2,), d_alpha),
+        "alpha": ((0, 1), d1 * d2),
+        "xi1": ((1, 2), d2 * d_alpha),
+        "xi2": ((0, 2), d1 * d_alpha),
+    }
+    check_one_of("which", which, integrals)
+    axes, measure = integrals[which]
+    result: Array = checked(p, grid).sum(axis=axes) * measure
+    return result
+
+
+def moments(p: Array, grid: PhaseSpaceGrid) -> dict[str, float]:
+    """E ξ, the covariance of ξ, E cos α and E sin α, of the normalised density.
+
+    Parameters
+    ----------
+    p : ndarray, shape (n1, n2, n_alpha)
+    grid : PhaseSpaceGrid
+
+    Returns
+    -------
+    dict of str to float
+        mean_xi1, mean_xi2, variance_xi1, variance_xi2, covariance, mean_cos_alpha and
+        mean_sin_alpha.
+    """
+    return RowFunctionals(checked(p, grid), grid).moments()
+
+
+def relative_entropy(p: Array, grid: PhaseSpaceGrid, reference: Array) -> float:
+    """H(p|r) = ∫ p ln(p/r) dξ dα (11), natural logarithm.
+
+    Computed as ∫ p ln(p/r′) + M ln(M/S), where r′ = r M/S has the mass M of p on this
+    grid and S is that of r: the logarithms are then as small as p is near r′, and an
+    entropy of 1e-16 still has correct digits. Cells with p ≤ 0 contribute nothing,
+    the limit of small p; look at the minimum beside it. r′ counts as 1e-300 where it is
+    below: mass behind a wall of B > 690 makes H too small.
+
+    Parameters
+    ----------
+    p : ndarray, shape (n1, n2, n_alpha)
+    grid : PhaseSpaceGrid
+    reference : ndarray, shape (n1, n2) or (n1, n2, n_alpha)
+        Usually p_S = `model.equilibrium(*grid.plane())`, normalised on R² × [0, 2π).
+
+    References
+    ----------
+    [KMW09]_, remark 3.2, equation (11).
+    """
+    p, reference = checked(p, grid), as_field(reference, grid)
+    masses = np.sum(p), reference_sum(reference, grid)
+    ratio = float(masses[0] / masses[1]) if masses[1] > 0 else math.nan
+    if not ratio > 0:
+        # No entropy without mass; the run's own checks say what went wrong.
+        return math.nan
+    if reference.shape[2] == 1:
+        inverse = inverse_of(reference[:, :, 0], ratio)
+        return RowFunctionals(p, grid, inverse).relative_entropy(ratio)
+    total = sum(entropy_of_slab(p[k], reference[k] * ratio) for k in slabs(grid))
+    return (total + float(masses[0]) * math.log(ratio)) * grid.cell_volume
+
+
+def entropy_of_slab(p: Array, reference: Array) -> float:
+    """Σ p ln(p/r) − p + r over some planes; r depends on α."""
+    logarithm: Array = p * inverse_of(reference, 1.0)
+    np.maximum(logarithm, SMALLEST, out=logarithm)
+    np.log(logarithm, out=logarithm)
+    positive = np.einsum("ijk,ijk->", np.maximum(p, 0.0), logarithm)
+    return float(positive - p.sum() + reference.sum())
+
+
+def entropy_floor(
+    grid: PhaseSpaceGrid, reference: Array, total_mass: float = 1.0
+) -> float:
+    """M ln(M/S): the entropy of the reference's own restriction to the grid.
+
+    S is the mass of the reference on this grid; it differs from 1 by what the box
+    cuts off and by the quadrature error. H tends to this value, not to zero.
+
+    Parameters
+    ----------
+    grid : PhaseSpaceGrid
+    reference : ndarray, shape (n1, n2) or (n1, n2, n_alpha)
+    total_mass : float
+        M, the mass of the density.
+    """
+    reference = as_field(reference, grid)
+    total = reference_sum(reference, grid) * grid.cell_volume
+    return total_mass * math.log(total_mass / total)
+
+
+def entropy_dissipation(
+    p: Array, grid: PhaseSpaceGrid, noise: float, reference: Array | None = None
+) -> float:
+    """(A²/2) ∫ p (∂_α ln(p/r))² dξ dα = −dH/ds, of order 8 in Δα.
+
+    Written as 2A² ∫ r (∂_α √(p/r))², which needs no logarithm and no division by p.
+    A reference that does not depend on α (the default) drops out.
+
+    Parameters
+    ----------
+    p : ndarray, shape (n1, n2, n_alpha)
+    grid : PhaseSpaceGrid
+    noise : float
+        A.
+    reference : ndarray, shape (n1, n2) or (n1, n2, n_alpha), optional
+        r.
+
+    References
+    ----------
+    [KMW09]_, remark 3.2.
+    """
+    p, noise = checked(p, grid), check_non_negative("noise", noise)
+    if reference is None or as_field(reference, grid).shape[2] == 1:
+        return RowFunctionals(p, grid).entropy_dissipation(noise)
+    root = np.sqrt(np.maximum(p, 0.0) / np.maximum(reference, SMALLEST))
+    slope, weight = staggered(root, DIFFERENCE, -1.0), staggered(reference, MIDPOINT, 1)
+    total = float((weight * slope**2).sum()) / grid.spacing[2] ** 2
+    return 2.0 * noise**2 * total * grid.cell_volume
+
+
+def staggered(q: Array, weights: tuple[float, ...], sign: float) -> Array:
+    """Σ_j w_j (q[k+1+j] + sign · q[k−j]) along the angle, periodic."""
+    total = np.zeros_like(q)
+    for j, weight in enumerate(weights):
+        total += weight * (np.roll(q, -1 - j, axis=2) + sign * np.roll(q, j, axis=2))
+    return total
+
+
+def l1_distance(p: Array, q: Array, grid: PhaseSpaceGrid) -> float:
+    """∫ |p − q| dξ dα by the midpoint rule.
+
+    Parameters
+    ----------
+    p, q : ndarray, shape (n1, n2, n_alpha)
+    grid : PhaseSpaceGrid
+    """
+    return float(np.abs(checked(p, grid) - q).sum()) * grid.cell_volume
+
+
+def checked(p: Array, grid: PhaseSpaceGrid) -> Array:
+    """The density, of the shape of the grid; NaN in it shows in what is read off."""
+    check_grid(grid)
+    return grid.check(p)
+
+
+def checked_reference(reference: Array, grid: PhaseSpaceGrid) -> Array:
+    """A reference that is finite, not negative and has mass, as (n1, n2, …)."""
+    reference = check_finite_numbers("reference", reference)
+    as_field(reference, grid)
+    if not (reference.min() >= 0 and reference.max() > 0):
+        raise ValueError(
+            "`reference` must be non-negative with positive mass, got values from "
+            f"{reference.min():g} to {reference.max():g}; the entropy is relative to "
+            "a density."
+        )
+    return reference
+
+
+def as_field(reference: Array, grid: PhaseSpaceGrid) -> Array:
+    """A reference as (n1, n2, 1) or (n1, n2, n_alpha)."""
+    check_grid(grid)
+    reference = check_numbers("reference", reference)
+    if reference.shape == grid.shape[:2]:
+        return reference[:, :, None]
+    if reference.shape not in (grid.shape, (*grid.shape[:2], 1)):
+        raise GridMismatchError(grid.shape, reference.shape, "reference")
+    return reference
+
+
+def reference_sum(reference: Array, grid: PhaseSpaceGrid) -> float:
+    """Sum of a reference over all cells of the grid."""
+    repeats = grid.shape[2] // reference.shape[2]
+    return float(reference.sum()) * float(repeats)
+
+
+def slabs(grid: PhaseSpaceGrid) -> Iterator[slice]:
+    """Blocks of planes small enough for the cache."""
+    n1, n2, n_alpha = grid.shape
+    planes = max(1, CELLS_PER_SLAB // (n2 * n_alpha))
+    for start in range(0, n1, planes):
+        yield slice(start, min(start + planes, n1))

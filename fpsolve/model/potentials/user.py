@@ -1,0 +1,182 @@
+"""Potentials made of a user's own functions, checked when they are built."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from fpsolve._support.arrays import check_numbers
+from fpsolve.model.potentials.potential import Potential, RadialPotential
+from fpsolve.model.potentials.probes import (
+    check_plane_functions,
+    check_radial_functions,
+)
+
+__all__ = ["CallablePotential", "IsotropicPotential"]
+
+
+@dataclass(frozen=True, init=False, repr=False)
+class IsotropicPotential(RadialPotential):
+    """B(‖ξ‖) from two functions of r, the profile and its derivative.
+
+    The gradient at the origin is defined as 0, and `derivative` is not called there.
+    Z comes from quadrature. It can be described in a file, but not read back. Equal
+    when the functions are the same objects.
+
+    Parameters
+    ----------
+    value, derivative : callable
+        B(r) and B'(r) for an array of r >= 0, elementwise.
+
+    Raises
+    ------
+    TypeError
+        If an argument is not callable, or does not return real numbers.
+    ValueError
+        If a function is not elementwise, not finite at the probe radii, or if
+        `derivative` is not the derivative of `value` there.
+    """
+
+    _value: Callable[[Any], ArrayLike]
+    _derivative: Callable[[Any], ArrayLike]
+
+    kind: ClassVar[str] = "callable"
+
+    def __init__(
+        self,
+        value: Callable[[Any], ArrayLike],
+        derivative: Callable[[Any], ArrayLike],
+    ) -> None:
+        check_radial_functions(value, derivative)
+        object.__setattr__(self, "_value", value)
+        object.__setattr__(self, "_derivative", derivative)
+
+    def radial_value(self, r: ArrayLike) -> NDArray[np.float64]:
+        """B(r)."""
+        return _as_float(self._value, check_numbers("r", r))
+
+    def radial_derivative(self, r: ArrayLike) -> NDArray[np.float64]:
+        """B'(r)."""
+        return _as_float(self._derivative, check_numbers("r", r))
+
+    @property
+    def formula(self) -> str:
+        """B as plain text; the functions are not known in closed form."""
+        return "B(‖ξ‖)"
+
+    @property
+    def latex(self) -> str:
+        """B as LaTeX; the functions are not known in closed form."""
+        return r"B(\|\xi\|)"
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return a description, which `potential_from_dict` refuses."""
+        return {"kind": self.kind, "description": repr(self)}
+
+    def __repr__(self) -> str:
+        functions = f"value={_name(self._value)}, derivative={_name(self._derivative)}"
+        return f"IsotropicPotential({functions})"
+
+
+@dataclass(frozen=True, init=False, repr=False)
+class CallablePotential(Potential):
+    """B(ξ1, ξ2) from two functions on the plane, the value and its gradient.
+
+    Z comes from quadrature. It can be described in a file, but not read back. Equal
+    when the functions are the same objects.
+
+    Parameters
+    ----------
+    value : callable
+        ``value(xi1, xi2)`` gives B, elementwise on arrays that broadcast.
+    gradient : callable
+        ``gradient(xi1, xi2)`` gives the pair (∂B/∂ξ1, ∂B/∂ξ2), likewise.
+
+    Raises
+    ------
+    TypeError
+        If an argument is not callable, or does not return real numbers.
+    ValueError
+        If a function is not elementwise, not finite at the probe points, or if
+        `gradient` is not the gradient of `value` there.
+    """
+
+    _value: Callable[[Any, Any], ArrayLike]
+    _gradient: Callable[[Any, Any], tuple[ArrayLike, ArrayLike]]
+
+    kind: ClassVar[str] = "callable"
+
+    def __init__(
+        self,
+        value: Callable[[Any, Any], ArrayLike],
+        gradient: Callable[[Any, Any], tuple[ArrayLike, ArrayLike]],
+    ) -> None:
+        check_plane_functions(value, gradient)
+        object.__setattr__(self, "_value", value)
+        object.__setattr__(self, "_gradient", gradient)
+
+    def value(self, xi1: ArrayLike, xi2: ArrayLike) -> NDArray[np.float64]:
+        """B(ξ1, ξ2), float64, in the broadcast shape of the arguments."""
+        return _as_float(self._value, *_coordinates(xi1, xi2))
+
+    def gradient(
+        self, xi1: ArrayLike, xi2: ArrayLike
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """(∂B/∂ξ1, ∂B/∂ξ2), two float64 arrays in the broadcast shape."""
+        xi1, xi2 = _coordinates(xi1, xi2)
+        shape = np.broadcast_shapes(np.shape(xi1), np.shape(xi2))
+        slope1, slope2 = self._gradient(*_arrays(xi1, xi2))
+        return _filled(slope1, shape), _filled(slope2, shape)
+
+    @property
+    def formula(self) -> str:
+        """B as plain text; the functions are not known in closed form."""
+        return "B(ξ)"
+
+    @property
+    def latex(self) -> str:
+        """B as LaTeX; the functions are not known in closed form."""
+        return r"B(\xi)"
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return a description, which `potential_from_dict` refuses."""
+        return {"kind": self.kind, "description": repr(self)}
+
+    def __repr__(self) -> str:
+        functions = f"value={_name(self._value)}, gradient={_name(self._gradient)}"
+        return f"CallablePotential({functions})"
+
+
+def _coordinates(xi1: ArrayLike, xi2: ArrayLike) -> tuple[NDArray[np.float64], ...]:
+    return check_numbers("xi1", xi1), check_numbers("xi2", xi2)
+
+
+def _array(values: ArrayLike) -> NDArray[np.float64]:
+    return np.asarray(values, dtype=np.float64)
+
+
+def _arrays(*coordinates: ArrayLike) -> tuple[NDArray[np.float64], ...]:
+    # Of one shape, as when the functions were probed: one that stacks its arguments,
+    # or returns ∇B as one array, works on the plane too.
+    shape = np.broadcast_shapes(*map(np.shape, coordinates))
+    return tuple(np.broadcast_to(_array(values), shape) for values in coordinates)
+
+
+def _filled(values: ArrayLike, shape: tuple[int, ...]) -> NDArray[np.float64]:
+    # A user's function may return a constant where the formula has no variable.
+    return np.array(np.broadcast_to(_array(values), shape))
+
+
+def _as_float(
+    function: Callable[..., ArrayLike], *coordinates: ArrayLike
+) -> NDArray[np.float64]:
+    shape = np.broadcast_shapes(*map(np.shape, coordinates))
+    return _filled(function(*_arrays(*coordinates)), shape)
+
+
+def _name(function: Callable[..., Any]) -> str:
+    return getattr(function, "__qualname__", repr(function))

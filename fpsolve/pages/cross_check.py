@@ -1,0 +1,145 @@
+"""A comparison of density and paths: verdict, tests, what would have been seen."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from fpsolve.pages.blocks import (
+    Block,
+    Facts,
+    Figure,
+    Notice,
+    Paragraph,
+    Part,
+    Section,
+    Table,
+)
+from fpsolve.pages.equations import model_equations
+from fpsolve.pages.figures import embedded
+from fpsolve.pages.origin import provenance_part
+from fpsolve.pages.settings import curve_text, grid_text
+
+if TYPE_CHECKING:
+    from fpsolve.studies import CrossCheck
+
+__all__ = ["HEADINGS", "section", "summary_row"]
+
+HEADINGS = (
+    "s",
+    "χ²/k of cells",
+    "p",
+    "largest cell",
+    "p of ξ₁, ξ₂, α",
+    "largest moment",
+    "tests failed",
+)
+
+
+def section(check: CrossCheck, source: str, origin: dict[str, Any]) -> Section:
+    """Return the section of a page about a cross-check."""
+    from fpsolve.studies.agreement.wording import verdict
+
+    tone = "good" if check.agrees else "bad"
+    equations = [] if check.model is None else model_equations(check.model)
+    parts = [
+        Part("Summary", [Notice(verdict(check), tone), *_words(check)]),
+        Part("Equation", equations),
+        Part("Parameters", [Facts(_parameters(check))]),
+        Part("Tests", [_summary(check), _moments(check)]),
+        Part("Figure", [_figure(check)]),
+        provenance_part(origin),
+    ]
+    return Section(
+        "Density against paths", source, [part for part in parts if part.blocks]
+    )
+
+
+def summary_row(check: CrossCheck, s: float) -> tuple[str, ...]:
+    """One cell under each of the `HEADINGS` for the tests at s."""
+    from fpsolve.studies.agreement.wording import LABELS
+
+    cells, single = check.test("cells", s), check.test("largest cell", s)
+    lines = [check.test(f"marginal {which}", s) for which in ("xi1", "xi2", "alpha")]
+    tests = [test for test in check.tests if test.s == s]
+    moments = [test for test in tests if test.degrees is None]
+    worst = max(moments, key=lambda test: abs(test.statistic))
+    failed = sum(not test.agrees for test in tests)
+    return (
+        f"{s:g}",
+        f"{cells.statistic / max(cells.degrees or 0, 1):.3f}",
+        f"{cells.p_value:.2g}",
+        f"|z| = {single.statistic:.2f}",
+        ", ".join(f"{line.p_value:.2g}" for line in lines),
+        f"{LABELS[worst.name]}, z = {worst.statistic:+.2f}",
+        f"{failed} of {len(tests)}",
+    )
+
+
+def _words(check: CrossCheck) -> list[Block]:
+    """Return the sentences after the verdict, one paragraph each."""
+    return [Paragraph(line.strip()) for line in str(check).splitlines()[1:]]
+
+
+def _parameters(check: CrossCheck) -> list[tuple[str, str]]:
+    model, solver, sampler = check.model, check.solver, check.sampler
+    also = " and ds/2, extrapolated" if solver["extrapolated"] else ", not extrapolated"
+    items: list[tuple[str, str]] = []
+    if model is not None:
+        items += [
+            ("potential", f"B = {model.potential.formula}"),
+            ("noise", f"A = {model.noise:g}"),
+            ("reference curve", curve_text(model.curve)),
+        ]
+    return [
+        *items,
+        ("grid", grid_text(check.grid)),
+        ("density", f"{solver['name']}, ds = {solver['ds']:.4g}{also}"),
+        ("paths", f"{check.n_paths:,}".replace(",", " ") + _sampler(sampler)),
+        ("seed", str(sampler["seed"])),
+        ("false alarm", f"probability at most {check.false_alarm:g}"),
+    ]
+
+
+def _sampler(sampler: dict[str, Any]) -> str:
+    return f" by {sampler['method']}, ds = {sampler['ds']:.4g}"
+
+
+def _summary(check: CrossCheck) -> Table:
+    return Table(
+        "Tests at every arclength.", HEADINGS,
+        [summary_row(check, float(s)) for s in check.s], words=frozenset({4, 5}),
+    )  # fmt: skip
+
+
+def _moments(check: CrossCheck) -> Table:
+    from fpsolve.studies.agreement.reference import MOMENTS
+    from fpsolve.studies.agreement.wording import LABELS
+
+    rows = [
+        (
+            f"{test.s:g}", LABELS[test.name], f"{test.density:.5g}",
+            f"{test.paths:.5g} ± {test.standard_error:.1g}",
+            f"{test.statistic:+.2f}", f"{test.detectable:.2g}",
+            "-" if test.step_error != test.step_error else f"{test.step_error:.1e}",
+        )
+        for test in check.tests if test.name in MOMENTS
+    ]  # fmt: skip
+    return Table(
+        "Moments by the density and by the paths.",
+        ("s", "moment", "density", "paths", "z", "shift that is seen", "step error"),
+        rows,
+        "z: deviation in standard errors. Shift that is seen: with probability 0.99. "
+        "Step error: of density and paths together; a dash where it is not estimated.",
+        words=frozenset({1}),
+    )  # fmt: skip
+
+
+def _figure(check: CrossCheck) -> Figure:
+    from fpsolve.plotting.comparison import plot_cross_check
+
+    return embedded(
+        lambda: plot_cross_check(check),
+        "Marginals of the density (lines) and of the paths (points); beneath, the "
+        "deviation of every cell in standard deviations.",
+        "Marginals of density and paths with their deviations",
+    )

@@ -1,0 +1,194 @@
+"""Studies of the limits of much and of little noise: distances, orders, figures."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from fpsolve._support.declared import declared
+from fpsolve.pages.blocks import (
+    Block,
+    Equation,
+    Facts,
+    Figure,
+    Paragraph,
+    Part,
+    Section,
+    Table,
+)
+from fpsolve.pages.equations import (
+    energy_equations,
+    fokker_planck,
+    mathml,
+    potential_equation,
+)
+from fpsolve.pages.figures import embedded
+from fpsolve.pages.studies import cases_blocks, entries, potential_of, versions_part
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["large_rows", "large_section", "small_rows", "small_section"]
+
+_LARGE_NOTE = (
+    "Orders are in ε = 1/A²; *: below three times its numerical error, so that the "
+    "solver cannot tell it from zero. A dash: not known."
+)
+_SMALL_NOTE = (
+    "± cells: error of the cells of the grid, at most. Orders are in A². Paths: "
+    "distance by paths, and what chance alone gives. A dash: not known."
+)
+
+
+def large_section(dataset: xr.Dataset, source: str) -> Section:
+    """Return the section of a page about the limit of much noise."""
+    about = declared(dataset.attrs)
+    start = dict(about["p0"])
+    items = [
+        ("potential", f"B = {about['formula']}"),
+        ("noises", _noises(dataset)),
+        ("slow length s/A²", f"{about['slow_length']:g}"),
+        ("belt speed", f"v = {about['belt_speed_scale']:g}/A², or "
+                       f"v = {about['fixed_speed']:g} where it is fixed"),
+        ("start", f"{start.pop('kind')}({entries(start)})"),
+        ("resolution", "quick" if about["quick"] else "full"),
+    ]  # fmt: skip
+    meanings = (
+        str(meaning).replace("e^{−B}", "e⁻ᴮ")
+        for meaning in dataset["meaning"].to_numpy()
+    )
+    rows = [
+        {**row, "quantity": meaning}
+        for row, meaning in zip(large_rows(dataset), meanings, strict=True)
+    ]
+    table = _table(
+        "Distance of the full equation from its limit at the same slow length.",
+        rows, _LARGE_NOTE, words=frozenset({0}),
+    )  # fmt: skip
+    limit = mathml(
+        r"\partial_\sigma \mathcal{P} = \nabla\cdot(\nabla\mathcal{P}"
+        r" + (\nabla B - w\,e_1)\,\mathcal{P})",
+        "∂_σ𝒫 = ∇·(∇𝒫 + (∇B - w e₁) 𝒫)",
+    )
+    scaling = mathml(
+        r"\sigma = \varepsilon s,\quad v = \varepsilon w,\quad \varepsilon = A^{-2}",
+        "σ = εs, v = εw, ε = 1/A²",
+    )
+    return _section(
+        "Limit of much noise", source, dataset, [limit, scaling], items, [table]
+    )
+
+
+def small_section(dataset: xr.Dataset, source: str) -> Section:
+    """Return the section of a page about the limit of little noise."""
+    about = declared(dataset.attrs)
+    options = about["options"]
+    items = [
+        ("potential", f"B = {about['formula']}"),
+        ("noises", _noises(dataset)),
+        ("belt speeds v/A²",
+         ", ".join(f"{float(w):g}" for w in dataset["belt_speed_scale"])),
+        ("settings", entries(options)),
+    ]  # fmt: skip
+    table = _table(
+        "Distance of the law of the energy G from that of the averaged equation (16).",
+        small_rows(dataset), _SMALL_NOTE,
+    )  # fmt: skip
+    limit = energy_equations()
+    said = Paragraph(
+        "G = r exp(-B(r)) sin β, β the angle between fibre and radius, changes slowly "
+        "when there is little noise; averaged over the fast rotation it is a diffusion."
+    )
+    return _section(
+        "Limit of little noise", source, dataset, limit, items, [said, table]
+    )
+
+
+def large_rows(dataset: xr.Dataset) -> list[dict[str, str]]:
+    """One row for every quantity: distances by noise, order derived and fitted."""
+    rows, last = [], ""
+    for quantity in dataset["quantity"].to_numpy():
+        one = dataset.sel(quantity=quantity)
+        part, measure = str(quantity).split("/")
+        row = {"quantity": f"{part}:\n  {measure}" if part != last else f"  {measure}"}
+        last = part
+        for noise in dataset["noise"].to_numpy():
+            distance = float(one["distance"].sel(noise=noise))
+            error = float(one["distance_error"].sel(noise=noise))
+            mark = "*" if distance < 3 * error else ""
+            row[f"A = {noise:g}"] = _number(distance) + mark
+        row["derived"] = _number(float(one["expected_order"]))
+        row["fitted"] = _number(float(one["fitted_order"]))
+        rows.append(row)
+    return rows
+
+
+def small_rows(dataset: xr.Dataset) -> list[dict[str, str]]:
+    """One row for every belt speed and noise."""
+    names = {
+        "distance": "distance", "± cells": "distance_error",
+        "order": "observed_order", "E G": "mean", "exact at rest": "exact_mean",
+        "paths": "paths_distance", "chance": "paths_distance_by_chance",
+    }  # fmt: skip
+    rows = []
+    for w in dataset["belt_speed_scale"].to_numpy():
+        for noise in dataset["noise"].to_numpy():
+            one = dataset.sel(belt_speed_scale=w, noise=noise)
+            row = {"v/A²": f"{w:g}", "A": f"{noise:g}"}
+            rows.append(
+                row | {key: _number(float(one[at])) for key, at in names.items()}
+            )
+    return rows
+
+
+def _number(value: float) -> str:
+    return f"{value:.2g}" if math.isfinite(value) else "-"
+
+
+def _noises(dataset: xr.Dataset) -> str:
+    return ", ".join(f"{float(noise):g}" for noise in dataset["noise"])
+
+
+def _table(
+    caption: str,
+    rows: list[dict[str, str]],
+    note: str,
+    words: frozenset[int] = frozenset(),
+) -> Table:
+    headings = list(rows[0]) if rows else []
+    return Table(caption, headings, [list(row.values()) for row in rows], note, words)
+
+
+def _section(
+    title: str,
+    source: str,
+    dataset: xr.Dataset,
+    limit: list[Equation],
+    items: list[tuple[str, str]],
+    distances: list[Block],
+) -> Section:
+    potential = potential_of(dataset)
+    known = [] if potential is None else [potential_equation(potential)]
+    parts = [
+        Part("Summary", cases_blocks(dataset)),
+        Part("Equation and its limit", [fokker_planck(), *known, *limit]),
+        Part("Parameters", [Facts(items)]),
+        Part("Distances", distances),
+        Part("Figures", _figures(dataset)),
+        versions_part(dataset),
+    ]
+    return Section(title, source, [part for part in parts if part.blocks])
+
+
+def _figures(dataset: xr.Dataset) -> list[Figure]:
+    from fpsolve.plotting.limits import plot_large_noise
+    from fpsolve.plotting.small_noise import plot_small_noise
+
+    if not bool(dataset["distance"].notnull().any()):
+        return []
+    draw = plot_large_noise if "quantity" in dataset.dims else plot_small_noise
+    return [embedded(
+        lambda: draw(dataset),
+        "Distances against the small parameter; thin lines: the slope that is derived.",
+        "Distances to the limit against the small parameter, logarithmic",
+    )]  # fmt: skip

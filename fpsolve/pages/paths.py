@@ -1,0 +1,173 @@
+"""Sampled paths in numbers: the process, moments with standard errors, figures."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from fpsolve.pages.blocks import Block, Facts, Figure, Paragraph, Part, Section, Table
+from fpsolve.pages.figures import embedded
+from fpsolve.pages.numbers import evenly, with_error
+from fpsolve.pages.origin import provenance_part, status_notice
+from fpsolve.pages.settings import (
+    curve_text,
+    grid_text,
+    start_text,
+    unread_model,
+    with_options,
+)
+from fpsolve.pages.units import process_of, units_part
+
+if TYPE_CHECKING:
+    from fpsolve.model.laydown import LayDownModel
+    from fpsolve.paths import Paths
+
+__all__ = ["MOMENTS", "moment_rows", "section"]
+
+# Heading: name of the moment.
+MOMENTS = {
+    "E ξ₁": "mean_xi1",
+    "E ξ₂": "mean_xi2",
+    "Var ξ₁": "variance_xi1",
+    "Var ξ₂": "variance_xi2",
+    "E cos α": "mean_cos_alpha",
+}
+_FIGURES = {
+    "ensemble": (
+        "Histograms at the last saved s, and moments with bands of one standard error; "
+        "white: contours that enclose 50 and 95 % of the equilibrium.",
+        "Histograms of deviation and angle, and moments of the paths",
+    ),
+    "trajectory": (
+        "One path: the deviation ξ in the plane, and the same over s.",
+        "A single path of the process",
+    ),
+    "fibre": (
+        "One fibre on the belt, as it is laid down.",
+        "A single fibre on the moving belt",
+    ),
+}
+
+
+def section(paths: Paths, source: str) -> Section:
+    """Return the section of a page about paths."""
+    process = process_of(paths.provenance)
+    parts = [
+        Part("Summary", [status_notice(paths.status, paths.message)]),
+        Part("Equation", _equations(paths)),
+        Part("Parameters", [Facts(_parameters(paths))]),
+    ]
+    if process is not None:
+        parts.append(units_part(process))
+    parts += [
+        Part("Moments", _moments(paths)),
+        Part("Figures", _figures(paths)),
+        provenance_part(paths.provenance, steps="steps of all paths"),
+    ]
+    return Section("Sampled paths", source, parts)
+
+
+def moment_rows(paths: Paths) -> list[list[str]]:
+    """Arclength, then `MOMENTS` with their standard errors, at some saved s."""
+    moments = paths.moments()
+    return [
+        [f"{moments.s[row]:.4g}"]
+        + [
+            with_error(
+                float(moments.values[name][row]),
+                float(moments.standard_errors[name][row]),
+            )
+            for name in MOMENTS.values()
+        ]
+        for row in evenly(len(moments.s))
+    ]
+
+
+def _equations(paths: Paths) -> list[Block]:
+    # Files may come without a model.
+    model: LayDownModel | None = paths.model
+    if model is None:
+        return unread_model(paths.provenance)
+    from fpsolve.pages.equations import mathml, potential_equation
+    from fpsolve.paths.dataset import process_equation
+
+    position, angle, *_ = process_equation(model).split(", ")
+    curve = model.curve
+    motion = r"\tau(\alpha)\,ds - d\gamma"
+    if curve.fixed:
+        motion = r"\tau(\alpha)\,ds"
+    elif curve.autonomous:
+        sign = "-" if curve.speed < 0 else "+"
+        motion = rf"(\tau(\alpha) {sign} {abs(curve.speed):g}\,e_1)\,ds"
+    noise = rf" + {model.noise:g}\,dW" if model.noise else ""
+    turn = rf"d\alpha = -\nabla B(\xi)\cdot\tau^\perp(\alpha)\,ds{noise}"
+    equations = [
+        mathml(rf"d\xi = {motion}", position),
+        mathml(turn, angle),
+        potential_equation(model.potential),
+    ]
+    if not curve.autonomous:
+        equations.append(
+            mathml(rf"\gamma(s) = {curve.latex}", f"γ(s) = {curve.formula}")
+        )
+    return [*equations]
+
+
+def _parameters(paths: Paths) -> list[tuple[str, str]]:
+    ensemble, schedule = paths.ensemble, paths.ensemble.schedule
+    model: LayDownModel | None = paths.model
+    items: list[tuple[str, str]] = []
+    if model is not None:
+        items += [
+            ("potential", f"B = {model.potential.formula}"),
+            ("noise", f"A = {model.noise:g}"),
+            ("reference curve", curve_text(model.curve)),
+        ]
+    items += [
+        ("start", _start(paths)),
+        ("paths", f"{ensemble.n_paths:,}".replace(",", " ") + _kept(paths)),
+        ("seed", str(ensemble.seed)),
+        ("method", ensemble.method),
+        ("step", f"ds = {schedule.ds:g}, {schedule.n_steps} steps from "
+                 f"s = {schedule.start:g}"),
+    ]  # fmt: skip
+    if ensemble.grid is not None:
+        items.append(("histogram", grid_text(ensemble.grid)))
+    return items
+
+
+def _start(paths: Paths) -> str:
+    configured = start_text(paths.provenance, "start")
+    if configured:
+        return configured
+    to_dict = getattr(paths.initial, "to_dict", None)
+    if to_dict is None:
+        return "not known"
+    options = to_dict()
+    return with_options(options.pop("kind"), options)
+
+
+def _kept(paths: Paths) -> str:
+    return "" if paths.kept else ", positions not kept"
+
+
+def _moments(paths: Paths) -> list[Block]:
+    table = Table(
+        "Means and variances over the paths.",
+        ("s", *MOMENTS), moment_rows(paths),
+        "In parentheses: one standard error, in units of the last digit.",
+    )  # fmt: skip
+    said = (
+        "Standard errors are those of independent paths. The bias of the step ds comes "
+        "in addition; there is no estimate of it here. fpsolve check compares paths "
+        "with the density and estimates both."
+    )
+    return [table, Paragraph(said)]
+
+
+def _figures(paths: Paths) -> list[Figure]:
+    from fpsolve.plotting.files import possible_figures
+
+    return [
+        embedded(lambda draw=draw: draw(paths), *_FIGURES[name])  # type: ignore[misc]
+        for name, draw in possible_figures(paths).items()
+    ]

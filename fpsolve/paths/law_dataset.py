@@ -1,0 +1,121 @@
+"""Laws of the start of paths, as an attribute and, where needed, arrays."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from fpsolve._support.checks import construct
+from fpsolve._support.digests import SAMPLED, digest_of, plain
+from fpsolve._support.labels import labels
+from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.model.potentials import potential_from_dict
+from fpsolve.paths import DensityLaw, EquilibriumLaw, GaussianLaw, PointLaw
+from fpsolve.paths.ensemble import START_BLOCK, GivenStart
+from fpsolve.paths.randomness import start_generator
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = [
+    "FORMULAS",
+    "describe_law",
+    "law_from_formula",
+    "law_variables",
+    "read_law",
+]
+
+# Stands in `provenance` for a law that cannot be read back.
+_UNREADABLE = "initial_description"
+_DENSITY = ("initial_xi1", "initial_xi2", "initial_alpha")
+# Laws that are a formula, so that a dictionary holds them whole.
+FORMULAS = (PointLaw, GaussianLaw, EquilibriumLaw)
+_KNOWN = (*FORMULAS, DensityLaw, GivenStart)
+
+
+def describe_law(law: Any, provenance: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a law without its arrays as a JSON-able dictionary."""
+    # Of a class that is derived from one of these it would not be all.
+    if type(law) in _KNOWN:
+        known: dict[str, Any] = law.to_dict()
+        return known
+    if law is None and _UNREADABLE in provenance:
+        return dict(provenance[_UNREADABLE])
+    own = {"description": plain(repr(law)), SAMPLED: _digest_of_draws(law)}
+    return {"kind": "custom", **own}
+
+
+def _digest_of_draws(law: Any) -> str | None:
+    """What a law of unknown code draws from a generator that is always the same."""
+    # A user's law raises whatever it likes.
+    try:
+        xi, alpha = law.sample(start_generator(0, 0), START_BLOCK)
+        return digest_of(np.column_stack([xi, alpha]))
+    except Exception:
+        return None
+
+
+def law_variables(law: Any) -> dict[str, Any]:
+    """Return the variables that hold the arrays of a law."""
+    if isinstance(law, DensityLaw):
+        name = "probability density of the start"
+        return {"initial_density": (_DENSITY, np.asarray(law.p), labels(name))}
+    if isinstance(law, GivenStart):
+        xi, alpha = "deviation ξ given for the start", "angle α given for the start"
+        return {
+            "initial_xi": (("initial_path", "component"), law.xi, labels(xi)),
+            "initial_alpha": (("initial_path",), law.alpha, labels(alpha)),
+        }
+    return {}
+
+
+def read_law(
+    description: Mapping[str, Any], dataset: xr.Dataset, provenance: dict[str, Any]
+) -> Any:
+    """Return the law, or None with a warning if it was a user's own.
+
+    Its description is added to the provenance then.
+    """
+    try:
+        return _law(dict(description), dataset)
+    except ValueError as error:
+        provenance[_UNREADABLE] = dict(description)
+        warnings.warn(
+            f"the law of the start could not be read back, so `initial` is None: "
+            f"{error}",
+            UserWarning,
+            stacklevel=5,
+        )
+        return None
+
+
+def _law(parameters: dict[str, Any], dataset: xr.Dataset) -> Any:
+    kind = parameters.pop("kind")
+    if kind == "given":
+        return GivenStart(dataset["initial_xi"].values, dataset["initial_alpha"].values)
+    if kind == "density":
+        grid = PhaseSpaceGrid.from_dict(parameters["grid"])
+        return DensityLaw(grid, dataset["initial_density"].values)
+    return law_from_formula({"kind": kind, **parameters})
+
+
+def law_from_formula(description: Mapping[str, Any]) -> Any:
+    """Return the law of `FORMULAS` that its `to_dict` described.
+
+    Raises
+    ------
+    ValueError
+        If it is another one.
+    """
+    parameters = dict(description)
+    kind = parameters.pop("kind")
+    if kind == "equilibrium":
+        return EquilibriumLaw(potential_from_dict(parameters["potential"]))
+    if kind == "point":
+        return construct(PointLaw, "initial", parameters)
+    if kind == "gaussian":
+        return construct(GaussianLaw, "initial", parameters)
+    raise ValueError(f"{parameters.get('description', kind)} is a user's own law.")

@@ -1,5 +1,0 @@
-"""Compute again what a file holds, from what it says about how it was made."""
-
-from fpsolve.rerunning.repeating import rerun
-
-__all__ = ["rerun"]

@@ -1,0 +1,205 @@
+"""Whether what a file asks for is what it holds, before it is computed again.
+
+A file that was tampered with may ask for more than anybody can wait for. What it asks
+for decides sizes that the file has, too; where both differ it is refused.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterator, Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from fpsolve._support.declared import declared
+from fpsolve.errors import NotRepeatableError
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from fpsolve.paths import Paths
+
+__all__ = ["check_paths", "check_run", "check_study"]
+
+# Seconds that a step takes for a cell, or a path, at the very least.
+_FASTEST = 1e-10
+_LONGEST = 30 * 86400.0
+# Arguments that decide the number of steps.
+_DECISIVE = ("s_span", "ds", "save_at", "record_every", "extrapolate")
+_SAME = 1e-6
+
+
+def check_run(result: Any, run: Mapping[str, Any], given: Collection[str]) -> None:
+    """Raise NotRepeatableError unless a run takes the steps that its result shows.
+
+    Parameters
+    ----------
+    result : Solution, HydrodynamicSolution or EnergySolution
+    run : mapping
+        Arguments of `solve`.
+    given : collection of str
+        Names of arguments that the caller chose instead; those are not looked at.
+    """
+    if any(name in given for name in _DECISIVE):
+        return
+    span, ds = run.get("s_span", ()), run.get("ds", 0.0)
+    if len(span) != 2 or not (0 < ds < np.inf and np.isfinite(span).all()):
+        raise _refused("`s_span` and `ds`", f"{span} and {ds:g}", "two numbers, a step")
+    n_steps = abs(span[1] - span[0]) / ds
+    passes = 3 if run.get("extrapolate") else 1
+    _check_time(n_steps * passes, result.grid.n_cells, "steps of all cells")
+    finished = result.status == "finished"
+    _check_records(result, run, n_steps, finished)
+    # A scheme of the caller's own need not count.
+    told = None if "scheme" in given else result.provenance.get("n_steps")
+    if finished and told is not None and abs(told - passes * n_steps) > 1:
+        raise _refused("`ds`", f"{passes * n_steps:.6g} steps", f"{told} steps")
+
+
+def check_paths(paths: Paths, given: Collection[str]) -> None:
+    """Raise NotRepeatableError unless paths take the steps that their result tells."""
+    if {"n_paths", "s_end", "s_start", "ds", "save_at"} & set(given):
+        return
+    ensemble = paths.ensemble
+    asked = paths.provenance.get("asked", {})
+    n_paths = asked.get("n_paths", ensemble.n_paths)
+    n_steps = asked.get("n_steps", ensemble.schedule.n_steps) - ensemble.first_step
+    _check_time(float(n_steps), n_paths, "steps of all paths")
+    told = paths.provenance.get("n_steps")
+    if not asked and told not in (None, n_paths * n_steps):
+        raise _refused("`n_steps`", f"{n_paths * n_steps} in all", f"{told}")
+
+
+def check_study(
+    function: str, arguments: Mapping[str, Any], dataset: xr.Dataset, given: Any
+) -> None:
+    """Raise NotRepeatableError unless a study has the cases that its dataset shows.
+
+    Parameters
+    ----------
+    function : str
+        Name in the recipe.
+    arguments : mapping
+    dataset : xarray.Dataset
+    given : collection of str
+        Names of arguments that the caller chose instead.
+    """
+    read = _HELD.get(function)
+    if read is None:
+        return
+    for name, held in read(dataset, declared(dataset.attrs)):
+        asked = arguments.get(name)
+        asked = asked.shape if name == "grid" and asked is not None else asked
+        # What is not in the recipe has its default.
+        if name in given or asked is None or held is None:
+            continue
+        if not _same(asked, held):
+            raise _refused(f"`{name}`", str(asked), str(np.asarray(held).tolist()))
+
+
+def _check_time(n_steps: float, n_each: int, what: str) -> None:
+    seconds = n_steps * n_each * _FASTEST
+    if not seconds <= _LONGEST:
+        raise NotRepeatableError(
+            f"the result asks for {n_steps * n_each:.2g} {what}, which take "
+            f"{seconds / 86400:.2g} days at the very least; pass arguments that ask "
+            "for less, or call its function again."
+        )
+
+
+def _check_records(
+    result: Any, run: Mapping[str, Any], n_steps: float, finished: bool
+) -> None:
+    s = result.series["s"]
+    saves = run.get("save_at") or ()
+    fewest = n_steps / max(run.get("record_every", 1), 1)
+    held = s.size - 1
+    if not held <= fewest + len(saves) + 1 or (finished and not fewest <= held + 1):
+        raise _refused("`record_every`", f"{fewest + 1:.6g} records", f"{s.size}")
+    ends, found = run["s_span"], (s[0], s[-1]) if s.size else ()
+    if finished and not (found and np.allclose(found, ends, rtol=_SAME)):
+        raise _refused("`s_span`", str(ends), ", ".join(f"{one:g}" for one in found))
+
+
+def _refused(name: str, asked: str, held: str) -> NotRepeatableError:
+    return NotRepeatableError(
+        f"the result cannot be of the arguments that are in it: {name} would give "
+        f"{asked}, and it holds {held}; pass the arguments that are right, or call its "
+        "function again."
+    )
+
+
+def _same(asked: Any, held: Any) -> bool:
+    try:
+        one, two = (np.sort(np.ravel(np.asarray(x, dtype=np.float64))) for x in
+                    (asked, held))  # fmt: skip
+    except (TypeError, ValueError):
+        return False
+    return one.shape == two.shape and np.allclose(one, two, rtol=_SAME, atol=0.0)
+
+
+Held = Iterator[tuple[str, Any]]
+
+
+def _values(dataset: xr.Dataset, name: str) -> Any:
+    return dataset[name].to_numpy() if name in dataset else None
+
+
+def _of_rates(dataset: xr.Dataset, about: Mapping[str, Any]) -> Held:
+    yield "noises", _values(dataset, "noise")
+    ends = _values(dataset, "s_end")
+    known = np.zeros(0) if ends is None else ends[np.isfinite(ends)]
+    yield "s_end", known[0] if known.size else None
+
+
+def _of_large_noise(dataset: xr.Dataset, about: Mapping[str, Any]) -> Held:
+    yield "noises", _values(dataset, "noise")
+    for name in ("slow_length", "belt_speed_scale", "fixed_speed"):
+        yield name, about.get(name)
+
+
+def _of_small_noise(dataset: xr.Dataset, about: Mapping[str, Any]) -> Held:
+    yield "noises", _values(dataset, "noise")
+    yield "belt_speed_scales", _values(dataset, "belt_speed_scale")
+    for name in ("slow_length", "ds", "n_paths"):
+        yield name, about.get("options", {}).get(name)
+
+
+def _of_small_noise_spectrum(dataset: xr.Dataset, about: Mapping[str, Any]) -> Held:
+    yield "noises", _values(dataset, "noise")
+    yield "tolerance", about.get("tolerance")
+
+
+def _of_averages(dataset: xr.Dataset, about: Mapping[str, Any]) -> Held:
+    yield "noises", _values(dataset, "noise")
+    saved, steps = _values(dataset, "s"), _values(dataset, "ds")
+    yield "s_end", None if saved is None else saved[-1:]
+    yield "n_paths", about.get("n_paths")
+    # If it was given, it is the same for every noise.
+    yield "ds", None if steps is None else np.unique(steps)
+
+
+def _of_check(dataset: xr.Dataset, about: Mapping[str, Any]) -> Held:
+    yield "s", _values(dataset, "s")
+    yield "n_paths", about.get("n_paths")
+    yield "ds", about.get("solver", {}).get("ds")
+    yield "paths_ds", about.get("sampler", {}).get("ds")
+    yield "grid", [dataset.sizes.get(axis, 0) for axis in ("xi1", "xi2", "alpha")]
+
+
+def _of_tables(dataset: xr.Dataset, about: Mapping[str, Any]) -> Held:
+    yield "n_energies", dataset.sizes.get("g", 0)
+    yield "n_eigenvalues", dataset.sizes.get("mode", 0)
+    yield "noise", about.get("noise")
+
+
+# Of every function what its dataset holds of its arguments.
+_HELD: dict[str, Callable[[Any, Mapping[str, Any]], Held]] = {
+    "rate_versus_noise": _of_rates,
+    "large_noise_limit": _of_large_noise,
+    "small_noise_limit": _of_small_noise,
+    "small_noise_spectrum": _of_small_noise_spectrum,
+    "ergodic_averages": _of_averages,
+    "cross_check": _of_check,
+    "energy_tables": _of_tables,
+}

@@ -1,9 +1,0 @@
-"""Operators, each one equation, and the compositions that are the schemes."""
-
-from fpsolve.schemes.drift_kick import DriftKick
-from fpsolve.schemes.semi_lagrangian import SemiLagrangian
-
-__all__ = ["DriftKick", "SemiLagrangian", "drift_kick", "semi_lagrangian"]
-
-drift_kick = DriftKick
-semi_lagrangian = SemiLagrangian

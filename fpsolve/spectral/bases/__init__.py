@@ -1,0 +1,1 @@
+"""Bases in which the generator is a matrix."""

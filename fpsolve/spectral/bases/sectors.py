@@ -1,0 +1,123 @@
+"""Invariant subspaces of the generator, and what a Galerkin basis in them offers.
+
+A discretisation is an orthonormal basis of L²(μ), μ = exp(-B) dξ dα / (2π Z), of
+functions of ξ times harmonics of α. The generator of (9),
+
+    L f = (τ + v e₁)·∇f - ∇B·τ⊥ ∂_α f + (A²/2) ∂_αα f,
+
+leaves subspaces invariant that symmetries define; in each of them it is one real
+matrix, and the matrix of the adjoint L* is its transpose.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any, NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fpsolve.grids.phase_space import PhaseSpaceGrid
+
+__all__ = ["Discretisation", "Sector", "Truncation"]
+
+# Coefficients, real or complex.
+Vector = NDArray[Any]
+
+
+@dataclass(frozen=True)
+class Sector:
+    """An invariant subspace of the generator.
+
+    Parameters
+    ----------
+    M : int or None
+        Conserved total angular index of an isotropic potential on a fixed belt: the
+        function is a sum of g_k(r) exp(i l φ + i k α) with l + k = M. The reflection
+        (ξ2, α) → -(ξ2, α) turns M into -M, so that M > 0 stands for both, with the
+        same eigenvalues. None where the index is not conserved.
+    parity : int or None
+        +1 or -1 under the reflection (ξ2, α) → -(ξ2, α); None for M other than 0.
+    parity_along : int or None
+        +1 or -1 under (ξ1, α) → (-ξ1, π - α), a symmetry of quadratic potentials with
+        σ1 ≠ σ2 on a fixed belt; None elsewhere.
+    """
+
+    M: int | None = None
+    parity: int | None = None
+    parity_along: int | None = None
+
+    @property
+    def multiplicity(self) -> int:
+        """How many sectors share these eigenvalues: 2 for ±M, else 1."""
+        return 2 if self.M else 1
+
+    @property
+    def has_constants(self) -> bool:
+        """Whether the constants, eigenvalue 0, belong to it."""
+        return not self.M and self.parity != -1 and self.parity_along != -1
+
+    def __str__(self) -> str:
+        if self.M:
+            return f"M = ±{self.M}"
+        names = {1: "even", -1: "odd"}
+        if self.M == 0:
+            return f"M = 0 {names.get(self.parity or 0, '')}".strip()
+        across, along = names[self.parity or 1], names.get(self.parity_along or 0)
+        return across if along is None else f"{along} along, {across} across"
+
+
+class Truncation(NamedTuple):
+    """Size of a basis: |k| <= harmonics in α, and `degree` in ξ."""
+
+    degree: int
+    harmonics: int
+
+
+class Discretisation(Protocol):
+    """A family of nested orthonormal bases of L²(μ), sorted into sectors."""
+
+    @property
+    def noise(self) -> float:
+        """The noise amplitude A."""
+        ...
+
+    def sectors(self) -> Iterator[Sector]:
+        """All sectors, those that hold the slowest modes first: by |M|.
+
+        Endless for an isotropic potential; the caller stops.
+        """
+        ...
+
+    def truncation(self, level: int) -> Truncation:
+        """The basis of a level, 0, 1, 2, ...: a sequence for refinement."""
+        ...
+
+    def enlarged(self, truncation: Truncation) -> Truncation:
+        """The basis in which L f lies (nearly, for a general B) for f of this one."""
+        ...
+
+    def harmonics(self, sector: Sector, truncation: Truncation) -> NDArray[np.int64]:
+        """The harmonic k of every basis function: dL/dA is -A k² on the diagonal."""
+        ...
+
+    def matrix(self, sector: Sector, degree: int, harmonics: int) -> Any:
+        """The real matrix of L (columns: images) as a CSC array."""
+        ...
+
+    def embed(
+        self, vector: Vector, sector: Sector, small: Truncation, large: Truncation
+    ) -> Vector:
+        """Coefficients in the larger basis."""
+        ...
+
+    def values(
+        self,
+        vector: Vector,
+        sector: Sector,
+        truncation: Truncation,
+        grid: PhaseSpaceGrid,
+    ) -> NDArray[np.complex128]:
+        """f(ξ, α) on the grid, shape `grid.shape`, from its coefficients."""
+        ...  # fmt: skip

@@ -1,0 +1,1 @@
+"""Eigenvalues of the generator, the gap, and what they rest on."""

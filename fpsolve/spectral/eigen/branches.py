@@ -1,0 +1,96 @@
+"""One branch of eigenvalues as a function of the noise, in a fixed truncation."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.potentials import Potential
+from fpsolve.spectral.bases.choice import discretisation_for
+from fpsolve.spectral.bases.sectors import Discretisation, Sector, Truncation
+from fpsolve.spectral.eigen.eigenvalues import ShiftedInverse
+
+__all__ = ["Branch", "PairBranch"]
+
+# Share of the rate by which a shift stays clear of the eigenvalue.
+CLEAR = 1e-3
+
+
+class Branch:
+    """λ(A) followed from a known value, by nearness.
+
+    Parameters
+    ----------
+    potential : Potential
+    sector : Sector
+    level : int
+        Of the truncation; the one for `noise` serves for all A.
+    noise, eigenvalue : float, complex
+        Where the branch is known.
+    """
+
+    def __init__(
+        self,
+        potential: Potential,
+        sector: Sector,
+        level: int,
+        noise: float,
+        eigenvalue: complex,
+    ) -> None:
+        self.potential, self.sector = potential, sector
+        self.truncation: Truncation = self._basis(noise).truncation(level)
+        self.known = {noise: eigenvalue}
+
+    def eigenvalue(self, noise: float) -> complex:
+        """λ(A), followed from the nearest noise at which it is known."""
+        nearest = min(self.known, key=lambda other: abs(other - noise))
+        value = self.known[nearest]
+        values = self._near(noise, value + CLEAR * abs(value.real), 3)
+        self.known[noise] = complex(values[np.argmin(np.abs(values - value))])
+        return self.known[noise]
+
+    def rate(self, noise: float) -> float:
+        """-Re λ(A)."""
+        return -self.eigenvalue(noise).real
+
+    def slope(self, noise: float) -> float:
+        """d(-Re λ)/dA = A Re ⟨l, k² r⟩/⟨l, r⟩, l and r left and right eigenvectors."""
+        value = self.eigenvalue(noise)
+        basis = self._basis(noise)
+        matrix = basis.matrix(self.sector, *self.truncation)
+        inverse = ShiftedInverse(matrix, value + CLEAR * abs(value.real))
+        values, vectors = inverse.eigenpairs(3)
+        right = vectors[:, np.argmin(np.abs(values - value))]
+        k = basis.harmonics(self.sector, self.truncation).astype(float)
+        # Turning α by π takes L to L*.
+        left = np.where(k % 2 == 0, 1.0, -1.0) * right
+        return noise * float(((left @ (k**2 * right)) / (left @ right)).real)
+
+    def _basis(self, noise: float) -> Discretisation:
+        return discretisation_for(LayDownModel(self.potential, noise))
+
+    def _near(self, noise: float, shift: complex, n: int) -> np.ndarray:
+        matrix = self._basis(noise).matrix(self.sector, *self.truncation)
+        values, _ = ShiftedInverse(matrix, shift).eigenpairs(n)
+        return values
+
+
+class PairBranch(Branch):
+    """Two eigenvalues m ± √δ that merge; m and δ are analytic in A where √δ is not."""
+
+    def halves(self, noise: float) -> tuple[float, float]:
+        """Mean m and discriminant δ = ((λ₁ - λ₂)/2)², both real."""
+        nearest = min(self.known, key=lambda other: abs(other - noise))
+        centre = self.known[nearest].real
+        first, second = self._near(noise, centre * (1 - CLEAR), 2)
+        mean, delta = (first + second) / 2, ((first - second) / 2) ** 2
+        self.known[noise] = complex(mean.real)
+        return float(mean.real), float(delta.real)
+
+    def discriminant(self, noise: float) -> float:
+        """δ(A): negative for a complex pair, 0 where it merges."""
+        return self.halves(noise)[1]
+
+    def rate(self, noise: float) -> float:
+        """-m(A)."""
+        return -self.halves(noise)[0]

@@ -1,0 +1,265 @@
+"""Eigenvalues of the generator, each with its error and its sector."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import psutil
+from numpy.typing import NDArray
+
+from fpsolve._support.blas import one_blas_thread
+from fpsolve._support.checks import check_integer, check_real, shown
+from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.potentials import QuadraticPotential
+from fpsolve.spectral.bases.choice import check_resolved, discretisation_for
+from fpsolve.spectral.bases.sectors import Discretisation, Sector, Truncation
+from fpsolve.spectral.eigen.refinement import Refinement, left_vector, with_residual
+from fpsolve.spectral.eigen.survey import Mode, Scale
+
+__all__ = ["Spectrum", "spectrum"]
+
+Complex = NDArray[np.complex128]
+Array = NDArray[np.float64]
+
+# What a spectrum may use unless told otherwise: degrees up to about 500 of the
+# quadratic potential, about a minute.
+DEFAULT_MEMORY = 2**28
+# Rounding alone leaves about this, relative to the rate.
+FINEST = 1e-13
+# More than any basis that fits resolves.
+MOST = 1000
+
+
+@dataclass(frozen=True, eq=False)
+class Spectrum:
+    """The slowest modes of the generator L, without the 0 of the constants.
+
+    Attributes
+    ----------
+    model : LayDownModel
+    eigenvalues : ndarray of complex, shape (n,)
+        Rightmost first; both of a complex pair, the one with the positive imaginary
+        part first.
+    errors : ndarray, shape (n,)
+        Distance to the eigenvalue in the truncation before plus rounding: an
+        overestimate as long as the truncation converges geometrically.
+    residuals : ndarray, shape (n,)
+        ‖L f - λ f‖/‖f‖ in L²(μ), computed in the next larger basis, which for a
+        quadratic potential holds L f exactly.
+    sectors : list of Sector
+        Where each eigenvalue belongs. A sector ±M has every eigenvalue twice, once for
+        each sign; it is listed once.
+    essential : float or None
+        Right end of the essential spectrum (B growing linearly); eigenvalues are given
+        to the right of it only.
+    truncation : Truncation
+        The largest basis used.
+    """
+
+    model: LayDownModel
+    eigenvalues: Complex
+    errors: Array
+    residuals: Array
+    sectors: list[Sector]
+    essential: float | None
+    truncation: Truncation
+    _modes: list[Mode] = field(repr=False)
+    _discretisation: Discretisation = field(repr=False)
+
+    @property
+    def gap(self) -> float:
+        """-max Re λ over the spectrum without 0: the asymptotic rate of convergence."""
+        candidates = [*self.eigenvalues.real[:1], *self._essential]
+        return -max(map(float, candidates))
+
+    @property
+    def gap_error(self) -> float:
+        """Error of `gap`."""
+        if self.is_isolated:
+            return float(self.errors[0])
+        return FINEST * self.gap
+
+    @property
+    def is_isolated(self) -> bool:
+        """Whether an eigenvalue, not the essential spectrum, limits the rate."""
+        return self.eigenvalues.size > 0
+
+    @property
+    def multiplicities(self) -> NDArray[np.int64]:
+        """2 for the sectors ±M, else 1; shape (n,)."""
+        return np.array([sector.multiplicity for sector in self.sectors], np.int64)
+
+    def eigenfunction(self, i: int, grid: PhaseSpaceGrid) -> Complex:
+        """F with L f = λ f on the grid, of norm 1 in L²(μ), μ = p_S.
+
+        Its largest coefficient is real and positive. For ±M it is the one of +M; the
+        other is its reflection f(ξ1, -ξ2, -α).
+        """
+        mode = self._modes[i]
+        return self._discretisation.values(
+            normalised(mode.vector), mode.sector, mode.truncation, grid
+        )
+
+    def density_mode(self, i: int, grid: PhaseSpaceGrid) -> Complex:
+        """p_S h with L* h = λ h, h of norm 1: the mode of the density itself.
+
+        p_S + ε Re(density_mode · exp(λ s)) solves (7) on a fixed belt. There h is the
+        eigenfunction with α turned by π; on a moving belt it is a function of its own,
+        less well resolved than the eigenfunction.
+        """
+        mode = self._modes[i]
+        left = normalised(left_vector(self._discretisation, mode))
+        h = self._discretisation.values(left, mode.sector, mode.truncation, grid)
+        reference: Complex = h * self.model.equilibrium(*grid.plane())[:, :, None]
+        return reference
+
+    @property
+    def _essential(self) -> list[float]:
+        return [] if self.essential is None else [self.essential]
+
+    def __str__(self) -> str:
+        lines = [self.model.equation]
+        lines.append(f"{'eigenvalue':>44}  {'error':>8}  {'residual':>8}  sector")
+        rows = zip(
+            self.eigenvalues, self.errors, self.residuals, self.sectors, strict=True
+        )
+        for value, error, residual, sector in rows:
+            digits = max(1, min(15, math.floor(-math.log10(error))))
+            number = f"{value.real:.{digits}f}"
+            number += f" {value.imag:+.{digits}f}i" if value.imag else ""
+            lines.append(f"{number:>44}  {error:8.1e}  {residual:8.1e}  {sector}")
+        if self.essential is not None:
+            lines.append(f"essential spectrum from {self.essential:.12g}")
+        return "\n".join(lines)
+
+
+@one_blas_thread()
+def spectrum(
+    model: LayDownModel,
+    n_eigenvalues: int = 6,
+    *,
+    tolerance: float = 1e-10,
+    sectors: Iterable[Sector] | None = None,
+    memory_limit: int | None = None,
+) -> Spectrum:
+    """The rightmost eigenvalues of the generator of (9) in L²(μ), other than 0.
+
+    L f = (τ + v e₁)·∇f - ∇B·τ⊥ ∂_α f + (A²/2) ∂_αα f by Galerkin projection on
+    polynomials in ξ times harmonics of α, sector by sector. All eigenvalues of a
+    truncation right of a line are found by overlapping discs along the imaginary axis;
+    those that move from one truncation to the next are spurious or not resolved, the
+    others are followed through growing bases until they stand still.
+
+    Not proved but measured: that no mode is lost in the sectors of large |M| and at
+    the high frequencies where the search ends (see `fpsolve.spectral.survey`).
+
+    Parameters
+    ----------
+    model : LayDownModel
+        Noise A > 0; a quadratic potential on a belt at rest or of constant speed, or
+        any isotropic one on a fixed belt.
+    n_eigenvalues : int
+        How many; a complex pair counts as two, ±M as one.
+    tolerance : float
+        Largest error of every eigenvalue relative to its rate -Re λ, at least 1e-13.
+        Close to a double eigenvalue rounding limits the accuracy to about 1e-8; then
+        `errors` says so and no exception is raised.
+    sectors : iterable of Sector, optional
+        Search in these only.
+    memory_limit : int, optional
+        Bytes for the largest basis; by default 256 MiB or what is available.
+
+    Raises
+    ------
+    ValueError
+        If the model has no gap, there is no basis for it, or its noise is so small or
+        large that rounding hides the rates.
+    MemoryLimitError
+        If not even the smallest basis fits.
+    ToleranceError
+        If no basis that fits reaches the tolerance.
+
+    References
+    ----------
+    [KMW09]_, equation (9); section 3.1.1.
+    """
+    n = check_integer("n_eigenvalues", n_eigenvalues, 1, MOST)
+    tolerance = check_tolerance(tolerance)
+    discretisation = discretisation_for(model)
+    check_resolved(model)
+    essential = essential_of(model)
+    refinement = Refinement(
+        discretisation,
+        n,
+        tolerance,
+        Scale.of(model, essential),
+        allowed_memory(memory_limit),
+        None if sectors is None else checked_sectors(sectors),
+    )
+    modes: list[Mode] = []
+    for mode in refinement.run():
+        mode = with_residual(discretisation, mode)
+        modes += [mode, mode.conjugate()][: mode.count]
+    modes = modes[:n]
+    largest = max((mode.truncation for mode in modes), default=Truncation(0, 0))
+    return Spectrum(
+        model=model,
+        eigenvalues=np.array([mode.eigenvalue for mode in modes], complex),
+        errors=np.array([mode.error for mode in modes]),
+        residuals=np.array([mode.residual for mode in modes]),
+        sectors=[mode.sector for mode in modes],
+        essential=essential,
+        truncation=largest,
+        _modes=modes,
+        _discretisation=discretisation,
+    )
+
+
+def checked_sectors(sectors: Any) -> tuple[Sector, ...]:
+    """The sectors as a tuple; TypeError unless it is a series of them."""
+    known = list(sectors) if isinstance(sectors, Iterable) else []
+    if not known or not all(isinstance(one, Sector) for one in known):
+        raise TypeError(
+            f"`sectors` must be a series of Sector, got {shown(sectors)}; leave it "
+            "out to search in all of them."
+        )
+    return tuple(known)
+
+
+def check_tolerance(tolerance: float) -> float:
+    """The tolerance as a float, checked."""
+    tolerance = check_real("tolerance", tolerance)
+    if not FINEST <= tolerance <= 0.1:
+        raise ValueError(
+            f"`tolerance` must lie in [{FINEST:g}, 0.1], got {tolerance:g}; double "
+            "precision leaves no more digits."
+        )
+    return tolerance
+
+
+def allowed_memory(memory_limit: int | None) -> int:
+    """Bytes for the largest basis."""
+    if memory_limit is None:
+        return min(DEFAULT_MEMORY, int(psutil.virtual_memory().available))
+    return check_integer("memory_limit", memory_limit, 1)
+
+
+def essential_of(model: LayDownModel) -> float | None:
+    """Right end of the essential spectrum, None without one."""
+    if isinstance(model.potential, QuadraticPotential) or not model.potential.isotropic:
+        return None
+    from fpsolve.spectral.bases.essential import asymptotic_slope, essential_threshold
+
+    return essential_threshold(asymptotic_slope(model.potential), model.noise)
+
+
+def normalised(vector: Complex) -> Complex:
+    """The vector with norm 1 and its largest entry real and positive."""
+    largest = vector[np.argmax(np.abs(vector))]
+    unit: Complex = vector * (abs(largest) / largest) / np.linalg.norm(vector)
+    return unit

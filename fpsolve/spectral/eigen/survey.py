@@ -1,0 +1,268 @@
+"""Every eigenvalue of a truncation to the right of a line: no branch may be lost."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csc_array
+
+from fpsolve.model.laydown import LayDownModel
+from fpsolve.spectral.bases.choice import orbit_radius
+from fpsolve.spectral.bases.sectors import Discretisation, Sector, Truncation
+from fpsolve.spectral.eigen.eigenvalues import ShiftedInverse, neighbour
+
+__all__ = ["Mode", "Scale", "leading", "order", "survey"]
+
+# Eigenvalues around one shift; more give larger discs and cost more each.
+N_NEAREST = 8
+# Eigenvalues accumulate at the essential spectrum, in ever higher sectors; those nearer
+# to it than this share are left out.
+NEAR_ESSENTIAL = 1e-3
+# Share taken of a distance to the spectrum that is known to one per cent.
+EMPTY = 0.9
+# Of the eigenvalues of a survey, relative to their distance from the shift.
+TOLERANCE = 1e-8
+# Found from two shifts, an eigenvalue differs by rounding only.
+SAME = 1e-6
+# Modes up to this factor beyond the last one wanted are kept, so that a comparison of
+# truncations sees the neighbours too.
+MARGIN = 1.15
+
+
+@dataclass(frozen=True, eq=False)
+class Mode:
+    """An eigenpair of one truncation: imaginary part >= 0 for its conjugate too.
+
+    Attributes
+    ----------
+    eigenvalue : complex
+    vector : ndarray
+        Coefficients of the eigenfunction.
+    sector, truncation
+        Where the coefficients belong.
+    partner : complex or None
+        The nearest other eigenvalue, which may be the conjugate.
+    error : float
+        Distance to the eigenvalue of the truncation before, plus `rounding`.
+    rounding : float
+        What rounding may have changed.
+    residual : float
+        ‖L f - λ f‖/‖f‖ in the next larger basis.
+    """
+
+    eigenvalue: complex
+    vector: NDArray[np.complex128]
+    sector: Sector
+    truncation: Truncation
+    partner: complex | None = None
+    error: float = math.inf
+    rounding: float = 0.0
+    residual: float = math.inf
+
+    @property
+    def rate(self) -> float:
+        """-Re λ."""
+        return -self.eigenvalue.real
+
+    @property
+    def count(self) -> int:
+        """1 for a real eigenvalue, 2 for a complex pair."""
+        return 2 if self.eigenvalue.imag else 1
+
+    def conjugate(self) -> Mode:
+        """The other one of a complex pair."""
+        return replace(
+            self, eigenvalue=self.eigenvalue.conjugate(), vector=self.vector.conj()
+        )
+
+
+@dataclass(frozen=True)
+class Scale:
+    """What the search may assume.
+
+    Attributes
+    ----------
+    frequency : float
+        Angular frequency of the circular orbit: unit of the imaginary parts.
+    rate : float
+        A rate smaller than all that matter: distance of the shifts from the axis.
+    limit : float
+        Rates from here on are not looked for (essential spectrum), may be infinite.
+    """
+
+    frequency: float
+    rate: float
+    limit: float = math.inf
+
+    @classmethod
+    def of(cls, model: LayDownModel, essential: float | None) -> Scale:
+        """From the circular orbit, r B'(r) = 1, and both limits of the noise."""
+        frequency = 1 / orbit_radius(model.potential)
+        slow = min(model.diffusivity, (frequency / model.noise) ** 2)
+        limit = math.inf if essential is None else (1 - NEAR_ESSENTIAL) * -essential
+        return cls(frequency, slow, limit)
+
+
+def survey(
+    discretisation: Discretisation,
+    truncation: Truncation,
+    n: int,
+    scale: Scale,
+    sectors: tuple[Sector, ...] | None = None,
+) -> list[Mode]:
+    """The n slowest modes of all sectors, and those up to 15 % faster.
+
+    Sectors are searched in order, and the search ends after two successive sectors
+    M > 1 without a mode that counts: the slowest rate of a sector grows with |M|. For
+    large noise it is |M|/(A² σ²); for small noise the eigenfunction of ±M turns |M|
+    times as often along an orbit, which diffusion smooths faster. In between this is
+    measured, not proved: for the quadratic potential and |M| <= 8 the slowest rates
+    increase from |M| = 1 on at A = 0.1, 0.3, 0.55, 0.8, 1, 1.6, 2.5 and 6, and windows
+    of frequency four times as wide hold nothing slower. Complex pairs count twice, ±M
+    once.
+    """
+    modes: list[Mode] = []
+    silent = 0
+    for sector in discretisation.sectors() if sectors is None else sectors:
+        cut = cut_after(modes, n, scale.limit)
+        found = Search(discretisation, sector, truncation, scale).run(n, cut)
+        modes = slowest(modes + found, n, scale.limit)
+        counts = not sector.M or sector.M < 2 or any(mode in modes for mode in found)
+        silent = 0 if counts else silent + 1
+        if silent == 2:
+            break
+    return modes
+
+
+def nth_rate(modes: list[Mode], n: int, limit: float) -> float:
+    """Rate of the n-th eigenvalue, or the limit when there are fewer."""
+    rates = np.sort([mode.rate for mode in modes for _ in range(mode.count)])
+    return min(float(rates[n - 1]), limit) if len(rates) >= n else limit
+
+
+def cut_after(modes: list[Mode], n: int, limit: float) -> float:
+    """A rate beyond the n-th: by 15 %, at most half the way to the limit."""
+    nth = nth_rate(modes, n, limit)
+    return min(MARGIN * nth, (nth + limit) / 2)
+
+
+def leading(modes: list[Mode], n: int) -> list[Mode]:
+    """The first modes that make n eigenvalues, pairs whole; or all there are."""
+    counts = np.cumsum([mode.count for mode in modes])
+    return modes[: 1 + int(np.searchsorted(counts, n))]
+
+
+def slowest(modes: list[Mode], n: int, limit: float) -> list[Mode]:
+    """The n slowest and those within the margin, slowest first."""
+    last = cut_after(modes, n, limit)
+    return sorted((mode for mode in modes if mode.rate <= last), key=order)
+
+
+def order(mode: Mode) -> tuple[float, float]:
+    """Rightmost first, then by frequency."""
+    return mode.rate, mode.eigenvalue.imag
+
+
+class Search:
+    """All eigenvalues of one sector with a rate below a cut, by overlapping discs.
+
+    The n eigenvalues nearest to a shift fill a disc in which there are no others. Discs
+    around shifts along the imaginary axis, each reaching into the one before, cover the
+    strip 0 < rate < cut from frequency 0 up to |M| + 3 times that of the circular
+    orbit, and beyond until a stretch of 1.5 such frequencies is empty. The matrix is
+    real, so the lower half plane follows.
+    """
+
+    def __init__(
+        self,
+        discretisation: Discretisation,
+        sector: Sector,
+        truncation: Truncation,
+        scale: Scale,
+    ) -> None:
+        self.sector, self.truncation, self.scale = sector, truncation, scale
+        self.on_edge = getattr(discretisation, "on_edge", None)
+        self.matrix: csc_array = discretisation.matrix(sector, *truncation)
+        self.modes: list[Mode] = []
+
+    def run(self, n: int, cut: float) -> list[Mode]:
+        """The modes up to the cut or, if that is less, a little beyond the n-th."""
+        if self.matrix.shape[0] == 0:
+            return []
+        self.cut, self.n = cut, n
+        chord = self.disc(0.0)
+        covered, step = chord, chord
+        while covered < self.last():
+            chord = self.disc(covered + step)
+            if chord >= step:
+                covered, step = covered + step + chord, max(chord, 0.5 * step)
+            else:
+                step *= 0.6
+        return slowest(self.modes, n, self.scale.limit) if self.modes else []
+
+    def last(self) -> float:
+        """Frequency up to which the strip must be covered."""
+        counted = [mode for mode in self.modes if mode.rate <= self.cut]
+        highest = max((mode.eigenvalue.imag for mode in counted), default=0.0)
+        least = (self.sector.M or 0) + 3.0
+        return max(least * self.scale.frequency, highest + 1.5 * self.scale.frequency)
+
+    def disc(self, frequency: float) -> float:
+        """Search around one shift; half the length of the strip that it covers."""
+        # In the middle of the strip, once it is known how wide it is.
+        middle = 0.1 * self.scale.rate if math.isinf(self.cut) else -self.cut / 2
+        inverse = ShiftedInverse(self.matrix, complex(middle, frequency))
+        if math.isfinite(self.cut) and (frequency > 0 or not self.sector.has_constants):
+            # Most of the axis is far from everything, which is seen at little cost.
+            empty, reach = EMPTY * inverse.distance(), self.cut / 2
+            chord = math.sqrt(max(empty**2 - reach**2, 0.0))
+            if chord > 0.1 * min(self.scale.frequency, 3 * frequency):
+                return chord
+        n_nearest = N_NEAREST
+        while True:
+            values, vectors = inverse.eigenpairs(n_nearest, tolerance=TOLERANCE)
+            distance = np.abs(values - inverse.shift)
+            whole = n_nearest >= self.matrix.shape[0]
+            radius = math.inf if whole else (1 - SAME) * distance[-1]
+            self.add(values, vectors, distance < radius)
+            self.cut = min(self.cut, cut_after(self.modes, self.n, self.scale.limit))
+            if radius == math.inf:
+                return radius
+            # The part of the strip that is furthest from the shift.
+            reach = max(self.cut + middle, abs(middle))
+            if math.isfinite(self.cut) and radius > reach * (1 + 1e-3):
+                return math.sqrt(radius**2 - reach**2)
+            n_nearest *= 2
+
+    def spurious(self, vector: NDArray[np.complex128]) -> bool:
+        """Whether an eigenvector belongs to the truncation and not to L."""
+        if self.on_edge is None:
+            return False
+        return bool(self.on_edge(vector, self.sector, self.truncation))
+
+    def add(
+        self,
+        values: NDArray[np.complex128],
+        vectors: NDArray[np.complex128],
+        inside: NDArray[np.bool_],
+    ) -> None:
+        """Keep what is new; multiple eigenvalues of one disc stay multiple."""
+        known = np.array([mode.eigenvalue for mode in self.modes], complex)
+        tiny = SAME * (np.abs(values) + self.scale.rate)
+        new = inside & (values.imag >= 0)
+        if self.sector.has_constants:
+            new &= np.abs(values) > SAME * self.scale.rate
+        if known.size:
+            new &= np.abs(values[:, None] - known).min(axis=1) > tiny
+        for i in np.flatnonzero(new):
+            if self.spurious(vectors[:, i]):
+                continue
+            # -0.0 would print as a conjugate.
+            value = complex(values[i].real, abs(values[i].imag))
+            partner = neighbour(values, i)
+            self.modes.append(
+                Mode(value, vectors[:, i], self.sector, self.truncation, partner)
+            )

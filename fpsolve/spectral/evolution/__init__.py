@@ -1,0 +1,1 @@
+"""Densities evolved in a basis of the generator."""

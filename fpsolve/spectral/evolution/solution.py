@@ -1,0 +1,95 @@
+"""What an expansion in time leaves behind."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fpsolve._support.checks import told_apart
+from fpsolve.evolution.schedule import index_of
+from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.model.laydown import LayDownModel
+from fpsolve.spectral.evolution import quadrature
+from fpsolve.spectral.evolution.expansion import Expansion
+from fpsolve.spectral.evolution.quadratic import quadratic
+from fpsolve.spectral.evolution.steady import SpectralSteadyState, spectral_steady_state
+
+__all__ = ["SpectralSolution"]
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class SpectralSolution:
+    """H(s) and moments of p(ξ, α, s), with an error estimate for every number.
+
+    Attributes `mass`, `relative_entropy`, `mean_xi1`, `mean_xi2`, `variance_xi1`,
+    `variance_xi2`, `covariance`, `mean_cos_alpha`, `mean_sin_alpha` are the series,
+    each of shape (n,) and dimensionless.
+
+    Attributes
+    ----------
+    model : LayDownModel
+    s : ndarray, shape (n,)
+    series : dict of ndarray
+    errors : dict of ndarray
+        One estimate for each number of `series`: the change from the next coarser
+        truncation, which bounds the error as long as refinement helps, plus what
+        rounding did to the mass and, for the entropy, its quadrature. Zero where a
+        value is known in closed form.
+    truncation : tuple of (int, int)
+        Degree and largest harmonic kept at each s.
+    tolerance : float
+    """
+
+    model: LayDownModel
+    s: Array
+    series: dict[str, Array]
+    errors: dict[str, Array]
+    truncation: tuple[tuple[int, int], ...]
+    tolerance: float
+    _expansions: tuple[Expansion, ...]
+
+    def __getattr__(self, name: str) -> Array:
+        series: dict[str, Array] = self.__dict__.get("series", {})
+        if name in series:
+            return series[name]
+        raise AttributeError(
+            f"SpectralSolution has no attribute {name!r}; its series are "
+            f"{', '.join(series)}."
+        )
+
+    def __dir__(self) -> list[str]:
+        return [*super().__dir__(), *self.series]
+
+    def __repr__(self) -> str:
+        worst = max(float(values.max()) for values in self.errors.values())
+        degree, harmonics = np.max(self.truncation, axis=0)
+        return (
+            f"SpectralSolution(s = {self.s[0]:g} to {self.s[-1]:g} at {self.s.size} "
+            f"places, degree {degree}, harmonics {harmonics}, largest error "
+            f"{worst:.1e})"
+        )
+
+    def density(self, s: float, grid: PhaseSpaceGrid) -> Array:
+        """p(ξ, α, s) at the cell centres of a grid; shape ``grid.shape``.
+
+        Raises
+        ------
+        ValueError
+            If s is not one of `s`.
+        """
+        place = index_of(self.s, s)
+        if place is None:
+            *known, got = told_apart(*self.s.tolist(), s)
+            raise ValueError(f"`s` must be one of {', '.join(known)}, got {got}.")
+        potential = quadratic(self.model)
+        return quadrature.density_on(self._expansions[place], grid, potential)
+
+    @cached_property
+    def steady_state(self) -> SpectralSteadyState:
+        """The stationary density that p tends to, with moments and their errors."""
+        return spectral_steady_state(self.model, tolerance=self.tolerance)

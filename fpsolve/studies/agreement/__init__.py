@@ -1,0 +1,1 @@
+"""Whether a density and paths have the same law."""

@@ -1,0 +1,222 @@
+"""The result of comparing a density with paths: tests, numbers and a verdict."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fpsolve.evolution.schedule import index_of
+from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.model.laydown import LayDownModel
+
+if TYPE_CHECKING:
+    import xarray
+
+__all__ = ["MARGINALS", "AgreementTest", "CrossCheck"]
+
+Array = NDArray[np.float64]
+MARGINALS = ("xi1", "xi2", "alpha")
+
+
+@dataclass(frozen=True)
+class AgreementTest:
+    """One test at one arclength.
+
+    Attributes
+    ----------
+    s : float
+    name : str
+        "coarse cells", "cells" and "largest cell" (histogram over phase space),
+        "marginal xi1", "marginal xi2", "marginal alpha", or the name of a moment.
+    statistic : float
+        χ² of cells and the marginals, largest |z| of "largest cell", z of a moment.
+    critical : float
+        |statistic| from which on the test disagrees.
+    p_value, threshold : float
+        The test disagrees when the p-value is below the threshold.
+    detectable : float
+        Smallest disagreement that is seen with probability 0.99: an L1 distance of
+        χ² tests, a relative error of one cell, a shift of a moment.
+    difference : float
+        The disagreement found, in the unit of `detectable`; for χ² tests the excess
+        √(max(χ² − k + 1, 0)/N), zero when there is none.
+    step_error : float
+        Estimated step error of density and paths together, in the unit of
+        `detectable`; NaN where nothing is known of it.
+    grid_error : float
+        Estimated error of the density's grid, in the unit of `detectable`; the test
+        allows for it. NaN where nothing is known of it.
+    degrees : int or None
+        Degrees of freedom of χ², number of cells of "largest cell".
+    density, paths, standard_error : float
+        Both values of a moment and the standard error of that of the paths; NaN for
+        the other tests.
+    """
+
+    s: float
+    name: str
+    statistic: float
+    critical: float
+    p_value: float
+    threshold: float
+    detectable: float
+    difference: float
+    step_error: float = math.nan
+    degrees: int | None = None
+    density: float = math.nan
+    paths: float = math.nan
+    standard_error: float = math.nan
+    grid_error: float = math.nan
+
+    @property
+    def agrees(self) -> bool:
+        """Whether the p-value reaches the threshold; a NaN does not."""
+        return self.p_value >= self.threshold
+
+    @property
+    def may_be_step_error(self) -> bool:
+        """Whether the difference is at most twice the estimated step error."""
+        return abs(self.difference) <= 2 * self.step_error
+
+    @property
+    def blurred(self) -> bool:
+        """Whether step errors are more than a tenth of what would be detected."""
+        return self.step_error > 0.1 * self.detectable
+
+
+@dataclass(frozen=True, eq=False)
+class CrossCheck:
+    """Whether a density and an ensemble of paths agree, in numbers and in words.
+
+    ``print(check)`` says whether they agree, how likely a false alarm was, and how
+    large a disagreement would have been seen. ``bool(check)`` is `agrees`.
+
+    Attributes
+    ----------
+    model : LayDownModel or None
+        That of the density.
+    grid : PhaseSpaceGrid
+    s : ndarray, shape (n_s,)
+    tests : tuple of AgreementTest
+    false_alarm : float
+        Upper bound of the probability that any test disagrees although density and
+        paths have the same law; divided evenly among the tests (Bonferroni).
+    n_paths : int
+    solver, sampler : dict
+        Where the density and the paths come from: names, steps, seed.
+    probabilities, counts : mapping of ndarray
+        Of the cells of the grid along "xi1", "xi2" and "alpha", shapes (n_s, n);
+        probabilities of the density, counts of paths inside the box.
+    recipe : mapping of str
+        How `cross_check` is called again; empty for two results that were compared.
+    start : ndarray, shape grid.shape, or None
+        The density p0, unless it was given as a formula.
+    """
+
+    model: LayDownModel | None
+    grid: PhaseSpaceGrid
+    s: Array
+    tests: tuple[AgreementTest, ...]
+    false_alarm: float
+    n_paths: int
+    solver: dict[str, Any]
+    sampler: dict[str, Any]
+    probabilities: Mapping[str, Array]
+    counts: Mapping[str, NDArray[np.int64]]
+    recipe: Mapping[str, str] = field(default_factory=dict)
+    start: Array | None = None
+
+    @property
+    def agrees(self) -> bool:
+        """Whether every test agrees."""
+        return all(test.agrees for test in self.tests)
+
+    @property
+    def failed(self) -> tuple[AgreementTest, ...]:
+        """Tests that disagree, the least likely first."""
+        failed = (test for test in self.tests if not test.agrees)
+        return tuple(sorted(failed, key=lambda test: test.p_value))
+
+    @property
+    def detectable(self) -> dict[str, Array]:
+        """Smallest disagreement seen with probability 0.99: name to (n_s,) array."""
+        names = dict.fromkeys(test.name for test in self.tests)
+        return {
+            name: np.array([t.detectable for t in self.tests if t.name == name])
+            for name in names
+        }
+
+    def test(self, name: str, s: float) -> AgreementTest:
+        """The test of that name at s.
+
+        Raises
+        ------
+        ValueError
+            If there is none.
+        """
+        place = index_of(np.array(self.s), s)
+        for test in self.tests:
+            if test.name == name and place is not None and test.s == self.s[place]:
+                return test
+        known = ", ".join(repr(test) for test in self.detectable)
+        places = ", ".join(f"{place:g}" for place in self.s)
+        raise ValueError(
+            f"`name` must be one of {known} and `s` one of {places}, got {name!r} at "
+            f"{s:g}."
+        )
+
+    def __bool__(self) -> bool:
+        return self.agrees
+
+    def __str__(self) -> str:
+        from fpsolve.studies.agreement.wording import report
+
+        return report(self)
+
+    def __repr__(self) -> str:
+        outcome = "agree" if self.agrees else "disagree"
+        return (
+            f"CrossCheck(density and {self.n_paths} paths {outcome}: "
+            f"{len(self.failed)} of {len(self.tests)} tests failed, "
+            f"false alarm {self.false_alarm:g})"
+        )
+
+    def to_dict(self) -> dict[str, Any]:
+        """The verdict, the tests and where both sides come from, ready for JSON.
+
+        What is not known is None: JSON has no NaN.
+        """
+        return {
+            "agrees": self.agrees,
+            "verdict": str(self),
+            "model": None if self.model is None else self.model.equation,
+            "grid": self.grid.to_dict(),
+            "s": self.s.tolist(),
+            "false_alarm": self.false_alarm,
+            "n_paths": self.n_paths,
+            "solver": self.solver,
+            "sampler": self.sampler,
+            "tests": [
+                {
+                    **{name: _known(value) for name, value in asdict(test).items()},
+                    "agrees": test.agrees,
+                }
+                for test in self.tests
+            ],
+        }
+
+    def to_xarray(self) -> xarray.Dataset:
+        """Labelled Dataset: every number of the tests (s, test), marginals (s, ...)."""
+        from fpsolve.studies.agreement.dataset import to_xarray
+
+        return to_xarray(self)
+
+
+def _known(value: Any) -> Any:
+    """Return the value, or None for a number that is not finite."""
+    return None if isinstance(value, float) and not math.isfinite(value) else value

@@ -1,0 +1,1 @@
+"""Constants of a potential that several studies need."""

@@ -1,0 +1,1 @@
+"""Averages along one path, and how fast they settle."""

@@ -1,0 +1,1 @@
+"""Many cases in several processes, kept as they are done."""
