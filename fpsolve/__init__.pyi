@@ -13,7 +13,6 @@ from .density.solution import Solution as Solution
 from .density.solve import solve as solve
 from .density.steady_state import SteadyState as SteadyState
 from .density.steady_state import steady_state as steady_state
-from .density.suggestions import suggest_grid as suggest_grid
 from .density.suggestions import suggest_step as suggest_step
 from .errors import CheckpointError as CheckpointError
 from .errors import CheckpointMismatchError as CheckpointMismatchError
@@ -73,5 +72,6 @@ from .spectral.evolution.evolution import spectral_solve as spectral_solve
 from .spectral.evolution.solution import SpectralSolution as SpectralSolution
 from .spectral.evolution.steady import SpectralSteadyState as SpectralSteadyState
 from .spectral.evolution.steady import spectral_steady_state as spectral_steady_state
+from .studies.suggested_grid import suggest_grid as suggest_grid
 
 __version__: str

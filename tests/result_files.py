@@ -14,12 +14,13 @@ from fpsolve.grids.initial import gaussian
 from fpsolve.pages.page import html_page
 from fpsolve.pages.reading import section_of
 from fpsolve.paths import GaussianLaw
-from fpsolve.reduced.energy.dataset import tables_dataset
 from fpsolve.results import save
+from fpsolve.spectral.eigen.dataset import spectrum_dataset
 from fpsolve.studies import compare
+from fpsolve.studies.energy_tables import tables_dataset
 from fpsolve.studies.limits.large_noise_dataset import large_noise_dataset
 from fpsolve.studies.limits.small_noise_dataset import small_noise_dataset
-from fpsolve.studies.rates.dataset import rates_dataset, spectrum_dataset
+from fpsolve.studies.rates.dataset import rates_dataset
 from fpsolve.studies.sweeps.sweep import Case
 
 POTENTIAL = fp.QuadraticPotential()

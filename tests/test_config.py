@@ -21,8 +21,9 @@ from fpsolve.cli.config import (
 )
 from fpsolve.cli.config.complaints import _SECTIONS
 from fpsolve.cli.config.names import suggestion
-from fpsolve.density.suggestions import suggest_grid, suggest_step
+from fpsolve.density.suggestions import suggest_step
 from fpsolve.errors import ConfigurationError
+from fpsolve.studies.suggested_grid import suggest_grid
 
 TEXT = """
 [potential]

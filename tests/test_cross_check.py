@@ -530,7 +530,8 @@ def test_the_names_of_the_package_are_loaded_on_first_use():
     code = (
         "import sys, fpsolve.studies as studies\n"
         "print(sorted({'numpy', 'scipy', 'numba'} & sys.modules.keys()))\n"
-        "studies.cross_check; print('fpsolve.studies.ergodicity.averages' in sys.modules)"
+        "studies.cross_check;"
+        "print('fpsolve.studies.ergodicity.averages' in sys.modules)"
     )
     done = subprocess.run(
         [sys.executable, "-c", code], capture_output=True, text=True, check=False

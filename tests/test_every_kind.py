@@ -8,7 +8,7 @@ import result_files
 
 import fpsolve as fp
 from fpsolve import plotting, studies
-from fpsolve._support.writing import write_dataset
+from fpsolve._support.netcdf import write_dataset
 from fpsolve.pages.page import report_text
 from fpsolve.plotting.files import possible_figures
 

@@ -6,9 +6,9 @@ from orders import assert_order, measure_order
 from problems import DecayingCirculation
 
 from fpsolve import initial
+from fpsolve.density.extrapolation import largest_nearby
 from fpsolve.density.schemes import drift_kick, semi_lagrangian
 from fpsolve.density.solve import solve
-from fpsolve.evolution.extrapolation import largest_nearby
 from fpsolve.grids.diagnostics import l1_distance, mass, moments, relative_entropy
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.model.curves import RotatingNozzle

@@ -13,8 +13,7 @@ from malformed import files as table
 import fpsolve as fp
 from fpsolve._support.declared import declared
 from fpsolve._support.json_text import bounded_json
-from fpsolve._support.netcdf import read_dataset
-from fpsolve._support.writing import write_dataset
+from fpsolve._support.netcdf import read_dataset, write_dataset
 from fpsolve.errors import FileFormatError, NotRepeatableError
 from fpsolve.studies.recipe import read_recipe
 

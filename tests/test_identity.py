@@ -12,9 +12,9 @@ import numba
 import numpy as np
 import pytest
 
-from fpsolve._support.identity import UnidentifiedError, digest_or_none, identity_digest
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.model.curves import Curve, RotatingNozzle, curve_from_dict, curve_to_dict
+from fpsolve.model.identity import UnidentifiedError, digest_or_none, identity_digest
 from fpsolve.model.laydown import LayDownModel
 from fpsolve.model.potentials import (
     CallablePotential,

@@ -12,7 +12,7 @@ from solutions import PROVENANCE, relaxing_solution
 
 from fpsolve import io
 from fpsolve._support import files as atomic
-from fpsolve._support.writing import write_dataset
+from fpsolve._support.netcdf import write_dataset
 from fpsolve.errors import FileFormatError
 from fpsolve.model.curves import (
     EllipticNozzle,

@@ -12,7 +12,6 @@ import fpsolve as fp
 from fpsolve import io
 from fpsolve.errors import FileFormatError
 from fpsolve.paths import DensityLaw, EquilibriumLaw, GaussianLaw, PointLaw
-from fpsolve.paths.dataset import process_equation
 from fpsolve.paths.ensemble import Ensemble
 
 SUFFIXES = [".nc", ".zarr"]
@@ -187,7 +186,7 @@ def test_a_model_of_functions_leaves_its_description_and_moments(tmp_path):
     with pytest.warns(UserWarning, match=r"could not be read back, so `model` is None"):
         loaded = fp.load(tmp_path / "first.nc")
     assert loaded.model is None
-    assert loaded.provenance["equation"] == process_equation(paths.model)
+    assert loaded.provenance["equation"] == paths.model.process_equation
     assert same_bits(loaded.states, paths.states)
     assert same_bits(
         loaded.moments().values["mean_xi1"], paths.moments().values["mean_xi1"]
@@ -243,7 +242,7 @@ def test_the_dataset_says_how_to_repeat_the_paths(paths):
     )
     assert same_bits(again.states, paths.states)
     assert json.loads(attributes["initial"]) == GaussianLaw().to_dict()
-    assert attributes["equation"] == process_equation(MODEL)
+    assert attributes["equation"] == MODEL.process_equation
     assert attributes["numpy_version"] == np.__version__
     assert attributes["date_created"] == paths.provenance["date"]
     assert attributes["Conventions"].startswith("CF-")
@@ -267,7 +266,8 @@ def test_paths_that_were_not_kept_have_no_positions():
     ],
 )
 def test_the_equation_names_what_drives_a_path(curve, noise, equation):
-    text = process_equation(fp.LayDownModel(fp.QuadraticPotential(), noise, curve))
+    model = fp.LayDownModel(fp.QuadraticPotential(), noise, curve)
+    text = model.process_equation
     assert text.startswith(equation)
     assert ("dW" in text) == (noise > 0)
     assert ("γ(s) = " in text) == (not curve.autonomous)

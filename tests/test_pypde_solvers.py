@@ -9,7 +9,8 @@ from problems import asymmetric_start
 
 from fpsolve import diagnostics
 from fpsolve.density.schemes import drift_kick, semi_lagrangian
-from fpsolve.density.solve import Tolerances, solve
+from fpsolve.density.solve import solve
+from fpsolve.density.tolerances import Tolerances
 from fpsolve.errors import (
     DomainTooSmallError,
     MassDriftError,

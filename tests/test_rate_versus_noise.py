@@ -26,10 +26,10 @@ from fpsolve.plotting.rates import (
     plot_rates,
     plot_spectrum,
 )
+from fpsolve.spectral.eigen.dataset import spectrum_dataset
 from fpsolve.spectral.eigen.spectrum import spectrum
 from fpsolve.studies.observables import default_observables
 from fpsolve.studies.rates.cases import PARTS
-from fpsolve.studies.rates.dataset import spectrum_dataset
 from fpsolve.studies.rates.modes import CLASSES, slowest_modes
 from fpsolve.studies.rates.poisson import asymptotic_variances
 from fpsolve.studies.rates.rate_versus_noise import rate_versus_noise

@@ -10,11 +10,10 @@ from solutions import relaxing_solution
 
 import fpsolve as fp
 from fpsolve import studies
-from fpsolve._support.netcdf import read_dataset
-from fpsolve._support.writing import write_dataset
+from fpsolve._support.netcdf import read_dataset, write_dataset
 from fpsolve.errors import NotRepeatableError, RunInterrupted
 from fpsolve.paths import DensityLaw, GaussianLaw
-from fpsolve.reduced.energy.dataset import tables_dataset
+from fpsolve.studies.energy_tables import tables_dataset
 from fpsolve.studies.recipe import RECIPE, UserCodeError, read_recipe, recipe
 
 GRID = fp.PhaseSpaceGrid(5.0, (12, 14, 8))

@@ -14,7 +14,7 @@ import fpsolve as fp
 from fpsolve import plotting
 from fpsolve._support import staging
 from fpsolve._support.files import atomic_path
-from fpsolve._support.writing import write_dataset
+from fpsolve._support.netcdf import write_dataset
 
 
 @pytest.fixture

@@ -32,10 +32,10 @@ from fpsolve.studies.constants.gap_expansion import next_gap_term  # noqa: E402
 from fpsolve.studies.constants.poincare import poincare_constant  # noqa: E402
 from fpsolve.studies.limits.distances import distances  # noqa: E402
 from fpsolve.studies.limits.large_noise import LARGE_NOISE_START  # noqa: E402
-from fpsolve.studies.limits.plane_limit import (
+from fpsolve.studies.limits.plane_limit import (  # noqa: E402
     stationary_limit,
     transient_limit,
-)  # noqa: E402
+)
 
 HALVINGS = 2.0 ** np.array([1.0, 1.5, 2.0, 2.5])  # ε = 1/4 … 1/32
 SLOW_LENGTH, PULL = 1.25, 0.5

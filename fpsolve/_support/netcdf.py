@@ -1,4 +1,4 @@
-"""Results as netCDF files or zarr stores."""
+"""Datasets as netCDF files or zarr stores."""
 
 from __future__ import annotations
 
@@ -16,27 +16,18 @@ from fpsolve._support.checksums import covered_variables, stamped, verified
 from fpsolve._support.declared import declared
 from fpsolve._support.files import atomic_path, check_room
 from fpsolve._support.sizes import check_sizes
-from fpsolve._support.streaming import (
-    append_densities,
-    lazy_densities,
-    without_densities,
-)
-from fpsolve.density.solution import Solution
+from fpsolve._support.streaming import Streamed, append
 from fpsolve.errors import FileFormatError
-from fpsolve.results.kinds import from_xarray, to_xarray
 
 if TYPE_CHECKING:
     import xarray as xr
 
-    from fpsolve.results.kinds import Result
-
 __all__ = [
     "ENGINES",
     "check_engine",
-    "load",
     "read_dataset",
     "reported_damage",
-    "save",
+    "write_dataset",
 ]
 
 ENGINES = ("h5netcdf", "zarr")
@@ -45,22 +36,27 @@ ENGINES = ("h5netcdf", "zarr")
 _SIGNATURE = b"\x89HDF\r\n\x1a\n"
 
 
-def save(
-    result: Result, path: str | os.PathLike[str], engine: str | None = None
+def write_dataset(
+    dataset: xr.Dataset,
+    path: str | os.PathLike[str],
+    engine: str | None = None,
+    streamed: Streamed | None = None,
 ) -> Path:
-    """Write a result to a file that holds everything needed to repeat the run.
+    """Write a dataset to a file, with checksums that `read_dataset` verifies.
 
     The file appears complete or not at all: an older one of the same name stays as it
     was until the new one is written. Arrays are stored bit for bit.
 
     Parameters
     ----------
-    result : Solution, Paths, HydrodynamicSolution or EnergySolution
+    dataset : xarray.Dataset
     path : str or os.PathLike
         Final place; its folder must exist. A link is followed to the file that it
         names; through a pipe that is read the finished file is written.
     engine : {"h5netcdf", "zarr"}, optional
         netCDF-4 or zarr; by default zarr for a path that ends in ".zarr".
+    streamed : Streamed, optional
+        One more variable, which does not fit into memory.
 
     Returns
     -------
@@ -73,7 +69,7 @@ def save(
         If the engine is unknown, or the path is a device, a socket, a link in a circle,
         or a pipe that nobody reads.
     TypeError
-        If it is no result, or the path no path.
+        If the path is no path.
     ImportError
         If zarr is asked for and not installed.
     FileNotFoundError, IsADirectoryError
@@ -83,52 +79,17 @@ def save(
     path = check_path("path", path)
     engine = _engine_of(path) if engine is None else engine
     check_engine(engine)
-    lazy, dataset = None, None
-    if isinstance(result, Solution):
-        lazy = lazy_densities(result)
-        dataset = None if lazy is None else without_densities(result)
-    if dataset is None:
-        dataset = to_xarray(result)
     dataset = stamped(dataset)
     with atomic_path(path) as draft:
         if engine == "zarr":
             dataset.to_zarr(draft, mode="w", consolidated=False)
         else:
-            needed = _plain_bytes(dataset) + getattr(lazy, "nbytes", 0)
+            needed = _plain_bytes(dataset) + getattr(streamed, "nbytes", 0)
             check_room(path, needed, draft)
             dataset.to_netcdf(draft, engine="h5netcdf", encoding=_encoding(dataset))
-        if lazy is not None:
-            append_densities(draft, engine, lazy)
+        if streamed is not None:
+            append(draft, engine, streamed)
     return path
-
-
-def load(path: str | os.PathLike[str]) -> Any:
-    """Read what `save` wrote, a result of any kind; arrays come back bit for bit.
-
-    Parameters
-    ----------
-    path : str or os.PathLike
-        A netCDF file or a zarr store.
-
-    Raises
-    ------
-    FileNotFoundError
-        If there is nothing at `path`.
-    FileFormatError
-        If the file is truncated, damaged, not a result of fpsolve, or declares more
-        than fits into memory.
-    ImportError
-        If it is a zarr store and zarr is not installed.
-
-    Warns
-    -----
-    UserWarning
-        If the model was made of a user's own functions; `model` is None then. The
-        same holds for a law of the start, `initial`.
-    """
-    dataset = read_dataset(path)
-    with reported_damage(path, Exception):
-        return from_xarray(dataset)
 
 
 def read_dataset(path: str | os.PathLike[str]) -> xr.Dataset:

@@ -1,82 +1,84 @@
-"""Densities that go from a checkpoint to a result one by one."""
+"""Variables that are written block after block, because they do not fit into memory."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, cast
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from fpsolve._support.checksums import CHECKSUMS, digest_of, with_digest
-from fpsolve._support.labels import labels
-from fpsolve.density import dataset as solutions
-from fpsolve.density.solution import Solution
-from fpsolve.evolution.series import DENSITY
-from fpsolve.evolution.stored import LazyDensities
-from fpsolve.results.kinds import marked
 
-if TYPE_CHECKING:
-    import xarray as xr
-
-__all__ = ["append_densities", "lazy_densities", "without_densities"]
-
-_DIMENSIONS = ("s", "xi1", "xi2", "alpha")
+__all__ = ["Streamed", "append"]
 
 
-def lazy_densities(solution: Solution) -> LazyDensities | None:
-    """Return the densities if they are on the disk."""
-    densities = cast(Any, solution.densities)
-    return densities if isinstance(densities, LazyDensities) else None
+class Streamed(NamedTuple):
+    """A variable whose blocks, along its first dimension, come one by one.
+
+    Attributes
+    ----------
+    name : str
+    dimensions : tuple of str
+    shape : tuple of int
+    dtype : dtype
+    blocks : iterable of ndarray
+        Can be gone through more than once.
+    attributes : dict
+    """
+
+    name: str
+    dimensions: tuple[str, ...]
+    shape: tuple[int, ...]
+    dtype: np.dtype[Any]
+    blocks: Iterable[Any]
+    attributes: dict[str, str]
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes of the whole variable."""
+        return int(np.prod(self.shape)) * self.dtype.itemsize
 
 
-def without_densities(solution: Solution) -> xr.Dataset:
-    """Return the dataset of a solution but for `density`."""
-    # One number in the place of all, which takes no memory.
-    nothing = np.broadcast_to(np.float64(0.0), solution.densities.shape)
-    dataset = solutions.to_xarray(solution, nothing)
-    return marked(dataset.drop_vars("density"), "solution")
-
-
-def append_densities(draft: Path, engine: str, densities: LazyDensities) -> None:
-    """Add `density` to a file that holds the rest of the dataset."""
+def append(draft: Path, engine: str, variable: Streamed) -> None:
+    """Add the variable to a file that holds the rest of the dataset."""
     if engine == "zarr":
-        _append_to_zarr(draft, densities)
+        _append_to_zarr(draft, variable)
     else:
-        _append_to_netcdf(draft, densities)
+        _append_to_netcdf(draft, variable)
 
 
-def _append_to_netcdf(draft: Path, densities: LazyDensities) -> None:
+def _append_to_netcdf(draft: Path, variable: Streamed) -> None:
     import h5netcdf
 
     with h5netcdf.File(draft, "a") as file:
-        variable = file.create_variable("density", _DIMENSIONS, densities.dtype)
-        variable.attrs.update(labels(DENSITY))
-        for index, p in enumerate(densities):
-            variable[index] = p
-        file.attrs[CHECKSUMS] = _complete(file.attrs[CHECKSUMS], densities)
+        array = file.create_variable(variable.name, variable.dimensions, variable.dtype)
+        array.attrs.update(variable.attributes)
+        for index, block in enumerate(variable.blocks):
+            array[index] = block
+        file.attrs[CHECKSUMS] = _complete(file.attrs[CHECKSUMS], variable)
 
 
-def _append_to_zarr(draft: Path, densities: LazyDensities) -> None:
+def _append_to_zarr(draft: Path, variable: Streamed) -> None:
     import zarr
 
-    attributes: dict[str, Any] = {**labels(DENSITY)}
     group = zarr.open_group(draft, mode="r+")
     array = group.create_array(
-        "density",
-        shape=densities.shape,
-        chunks=(1, *densities.shape[1:]),
-        dtype=densities.dtype,
+        variable.name,
+        shape=variable.shape,
+        chunks=(1, *variable.shape[1:]),
+        dtype=variable.dtype,
         fill_value=float("nan"),
-        dimension_names=_DIMENSIONS,
-        attributes=attributes,
+        dimension_names=variable.dimensions,
+        attributes=dict(variable.attributes),
     )
-    for index, p in enumerate(densities):
-        array[index] = p
-    group.attrs[CHECKSUMS] = _complete(str(group.attrs[CHECKSUMS]), densities)
+    for index, block in enumerate(variable.blocks):
+        array[index] = block
+    group.attrs[CHECKSUMS] = _complete(str(group.attrs[CHECKSUMS]), variable)
 
 
-def _complete(checksums: str, densities: LazyDensities) -> str:
-    """Return the checksums with that of the densities."""
-    labelled = labels(DENSITY)
-    about = "density", _DIMENSIONS, densities.shape, densities.dtype, labelled
-    return with_digest(checksums, "density", digest_of(*about, densities))
+def _complete(checksums: str, variable: Streamed) -> str:
+    """Return the checksums with that of the variable."""
+    name, dimensions, shape, dtype, blocks, attributes = variable
+    digest = digest_of(name, dimensions, shape, dtype, attributes, blocks)
+    return with_digest(checksums, name, digest)

@@ -147,7 +147,7 @@ def _write(
 ) -> None:
     """Write verdict and tests as JSON, all numbers as netCDF, and the figure."""
     from fpsolve._support.files import atomic_path, made_folder
-    from fpsolve._support.writing import write_dataset
+    from fpsolve._support.netcdf import write_dataset
 
     made_folder(out, "--out")
     stem = f"{name}-check"

@@ -73,7 +73,7 @@ def print_comparison(comparison: Comparison) -> None:
     from rich.console import Console
     from rich.table import Table
 
-    from fpsolve.results.compare.wording import sections, verdict
+    from fpsolve.results.compare.comparison import sections, verdict
 
     console = Console(highlight=False, markup=False)
     a, b = comparison.names
@@ -98,7 +98,7 @@ def print_comparison(comparison: Comparison) -> None:
 
 
 def _row(one: Difference) -> tuple[str, ...]:
-    from fpsolve.results.compare.wording import place_text
+    from fpsolve.results.compare.comparison import place_text
 
     units = " σ" if one.statistical else ""
     errors = "" if one.in_errors is None else f"{one.in_errors:.2g}{units}"

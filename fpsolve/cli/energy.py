@@ -84,7 +84,7 @@ def energy(
         check_folder(out, "--out")
         from fpsolve.cli.writing import check_outputs
         from fpsolve.reduced.energy import EnergyProcess
-        from fpsolve.reduced.energy.dataset import tables_dataset
+        from fpsolve.studies.energy_tables import tables_dataset
 
         check_outputs(out, "energy.nc", *(f"energy-{name}.png" for name in _FIGURES))
         chosen = make_potential(potential, sigma1, sigma2, slope, exponent)
@@ -141,7 +141,7 @@ def _write(
     process: EnergyProcess, tables: xr.Dataset, out: Path, figures: bool
 ) -> None:
     from fpsolve._support.files import made_folder
-    from fpsolve._support.writing import write_dataset
+    from fpsolve._support.netcdf import write_dataset
 
     made_folder(out, "--out")
     typer.echo(write_dataset(tables, out / "energy.nc"))

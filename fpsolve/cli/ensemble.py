@@ -30,10 +30,9 @@ def print_paths_plan(
 def _plan(
     config: PathsConfig, problem: PathsProblem, out: Path, seed_from: str
 ) -> list[tuple[str, str]]:
-    from fpsolve.paths.dataset import process_equation
 
     arguments = problem.arguments
-    lines = [("equation", process_equation(problem.model))]
+    lines = [("equation", problem.model.process_equation)]
     if config.process is not None:
         lines.append(("units", units_text(config.process.make())))
     start = "ξ = 0, α uniform" if config.start is None else with_options(config.start)

@@ -176,7 +176,7 @@ def _print(dataset: xr.Dataset, name: str) -> None:
 
 def _write(dataset: xr.Dataset, name: str, out: Path, suffix: str = "") -> Path:
     from fpsolve._support.files import made_folder
-    from fpsolve._support.writing import write_dataset
+    from fpsolve._support.netcdf import write_dataset
 
     made_folder(out, "--out")
     kind = json.loads(dataset.attrs["potential"])["kind"]

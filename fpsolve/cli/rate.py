@@ -220,7 +220,7 @@ def _write(dataset: xr.Dataset, out: Path, suffix: str = "") -> Path:
     import json
 
     from fpsolve._support.files import made_folder
-    from fpsolve._support.writing import write_dataset
+    from fpsolve._support.netcdf import write_dataset
 
     made_folder(out, "--out")
     kind = json.loads(dataset.attrs["potential"])["kind"]

@@ -124,14 +124,13 @@ def _write(result: Any, target: Path) -> None:
     import xarray as xr
 
     from fpsolve._support.files import made_folder
-    from fpsolve._support.writing import write_dataset
-    from fpsolve.results import save
+    from fpsolve._support.netcdf import write_dataset
 
     made_folder(target.parent, "--out")
     if isinstance(result, xr.Dataset):
         write_dataset(result, target)
     else:
-        save(result, target)
+        result.save(target)
 
 
 def _compared(file: Path, target: Path) -> Comparison:

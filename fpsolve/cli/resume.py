@@ -91,12 +91,11 @@ def _resume_other(directory: Path, out: Path, figures: bool) -> None:
 def _write(solution: Solution, out: Path, name: str, figures: bool) -> None:
     from fpsolve._support.files import made_folder
     from fpsolve.cli.solution_table import print_solution
-    from fpsolve.results import save
 
     made_folder(out, "--out")
     print_solution(solution)
     ending = "" if solution.status == "finished" else f"-{solution.status}"
-    typer.echo(save(solution, out / f"{name}{ending}.nc"))
+    typer.echo(solution.save(out / f"{name}{ending}.nc"))
     if figures:
         from fpsolve.plotting import save_figures
 

@@ -106,10 +106,10 @@ def spectrum(
 
 def _write(found: Spectrum, again: dict[str, str], out: Path, figure: bool) -> None:
     from fpsolve._support.files import atomic_path, made_folder
-    from fpsolve._support.writing import write_dataset
+    from fpsolve._support.netcdf import write_dataset
     from fpsolve.plotting.rates import plot_spectrum
     from fpsolve.plotting.style import RESOLUTION, paper_style
-    from fpsolve.studies.rates.dataset import spectrum_dataset
+    from fpsolve.spectral.eigen.dataset import spectrum_dataset
 
     made_folder(out, "--out")
     dataset = spectrum_dataset(found).assign_attrs(again)

@@ -47,7 +47,6 @@ def write_result(
     A part of a result does not take the place of an older, complete one.
     """
     from fpsolve._support.files import atomic_path, made_folder
-    from fpsolve.results import save
 
     made_folder(out, "--out")
     toml = config.to_toml()
@@ -56,7 +55,7 @@ def write_result(
     path = out / config.output.file_name
     if result.status != "finished":
         path = path.with_stem(f"{path.stem}-{result.status}")
-    typer.echo(save(result, path))
+    typer.echo(result.save(path))
     used = path.with_suffix(".toml")
     with atomic_path(used) as draft:
         draft.write_text(toml, encoding="utf-8")

@@ -1,1 +1,1 @@
-"""The grid solver: schemes, runs and what they leave, checkpoints, stationary densities."""
+"""The grid solver: schemes, runs, what they leave, checkpoints, stationary states."""

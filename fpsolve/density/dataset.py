@@ -1,53 +1,32 @@
-"""A solution as a labelled `xarray.Dataset`, and back."""
+"""A solution as a labelled `xarray.Dataset`."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from fpsolve._support.declared import declared
-from fpsolve._support.labels import (
-    check_complete,
-    describe_model,
-    labels,
-    origin,
-    read_model,
-    to_json,
-)
-from fpsolve.density.layout import check_solution_layout
-from fpsolve.density.solution import Solution
+from fpsolve._support.labels import labels, marked, origin, to_json
+from fpsolve._support.streaming import Streamed
 from fpsolve.evolution.series import (
     COORDINATES,
     DENSITY,
     START,
     long_name,
-    read_errors,
-    read_series,
 )
-from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.evolution.stored import LazyDensities
+from fpsolve.model.stored import describe_model
 
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["from_xarray", "to_xarray"]
+__all__ = ["saves_start", "stored_parts", "to_xarray"]
 
 _TITLE = "Solution of the fibre lay-down Fokker-Planck equation"
 _AXES = ("xi1", "xi2", "alpha")
-_NEEDED = ("s", "s_step", "density", "entropy_floor")
-_NEEDED_ATTRIBUTES = (
-    "model",
-    "grid",
-    "scheme",
-    "ds",
-    "status",
-    "message",
-    "provenance",
-)
 
 
-def to_xarray(solution: Solution, densities: Any = None) -> xr.Dataset:
+def to_xarray(solution: Any, densities: Any = None) -> xr.Dataset:
     """p(s, ξ1, ξ2, α) and every series as one labelled dataset.
 
     The densities share memory with the solution. Dimensions: `s` (saved densities),
@@ -89,56 +68,24 @@ def to_xarray(solution: Solution, densities: Any = None) -> xr.Dataset:
         dimension = "step" if name in solution.series else "s"
         error = f"{name}_error"
         variables[error] = (dimension, values, labels(long_name(error)))
-    return xr.Dataset(variables, _coordinates(solution), _attributes(solution))
+    dataset = xr.Dataset(variables, _coordinates(solution), _attributes(solution))
+    return marked(dataset, "solution")
 
 
-def from_xarray(dataset: xr.Dataset) -> Solution:
-    """Return the solution that `to_xarray` turned into `dataset`.
-
-    Arrays come back bit for bit. A model made of a user's own functions cannot be
-    read back: `model` is None then, and its description and equation are in
-    `provenance`.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-
-    Raises
-    ------
-    ValueError
-        If the dataset does not have the layout of `to_xarray`.
-
-    Warns
-    -----
-    UserWarning
-        If the model could not be read back.
-    """
-    check_complete(dataset, _NEEDED, _NEEDED_ATTRIBUTES)
-    attributes = declared(dataset.attrs)
-    provenance = attributes["provenance"]
-    model = read_model(attributes, provenance)
-    errors = read_errors(dataset)
-    grid = PhaseSpaceGrid.from_dict(attributes["grid"])
-    scheme = attributes["scheme"]
-    check_solution_layout(dataset, grid, attributes)
-    return Solution(
-        model=model,
-        grid=grid,
-        scheme=scheme,
-        ds=float(attributes["ds"]),
-        series=read_series(dataset, "step"),
-        saved_s=dataset["s"].values,
-        densities=dataset["density"].values,
-        entropy_floor=float(dataset["entropy_floor"]),
-        status=attributes["status"],
-        message=attributes["message"],
-        errors=errors or None,
-        provenance=provenance,
-        **_read_start(dataset, provenance),
-    )
+def stored_parts(solution: Any) -> tuple[xr.Dataset, Streamed | None]:
+    """The dataset of a solution, and apart from it densities that are on the disk."""
+    densities = cast(Any, solution.densities)
+    if not isinstance(densities, LazyDensities):
+        return to_xarray(solution), None
+    # One number in the place of all, which takes no memory.
+    nothing = np.broadcast_to(np.float64(0.0), densities.shape)
+    rest = to_xarray(solution, nothing).drop_vars("density")
+    shape, kind = densities.shape, densities.dtype
+    about = ("s", *_AXES), shape, kind, densities, labels(DENSITY)
+    return rest, Streamed("density", *about)
 
 
-def _start(solution: Solution) -> dict[str, Any]:
+def _start(solution: Any) -> dict[str, Any]:
     """Return what the run began with, unless it is among the saved densities."""
     p0, found = solution.initial_density, {}
     if p0 is not None and not _is_saved(p0, solution):
@@ -148,30 +95,17 @@ def _start(solution: Solution) -> dict[str, Any]:
     return found
 
 
-def _is_saved(p0: Any, solution: Solution) -> bool:
-    saved = _saves_start(solution.saved_s, solution.series["s"])
+def _is_saved(p0: Any, solution: Any) -> bool:
+    saved = saves_start(solution.saved_s, solution.series["s"])
     return saved and np.array_equal(solution.densities[0], p0)
 
 
-def _saves_start(saved_s: Any, s: Any) -> bool:
+def saves_start(saved_s: Any, s: Any) -> bool:
+    """Whether the first saved density is the one at the start."""
     return bool(saved_s.size and s.size and saved_s[0] == s[0])
 
 
-def _read_start(dataset: xr.Dataset, provenance: Mapping[str, Any]) -> dict[str, Any]:
-    p0 = reference = None
-    if "initial_density" in dataset:
-        p0 = dataset["initial_density"].values
-    # Of an older file it is not known whether the first density was the initial one.
-    elif "run" in provenance and _saves_start(
-        dataset["s"].values, dataset["s_step"].values
-    ):
-        p0 = dataset["density"].values[0]
-    if "reference_density" in dataset:
-        reference = dataset["reference_density"].values
-    return {"initial_density": p0, "reference": reference}
-
-
-def _coordinates(solution: Solution) -> dict[str, Any]:
+def _coordinates(solution: Any) -> dict[str, Any]:
     values = {
         "s": ("s", solution.saved_s),
         "s_step": ("step", solution.series["s"]),
@@ -183,7 +117,7 @@ def _coordinates(solution: Solution) -> dict[str, Any]:
     }
 
 
-def _attributes(solution: Solution) -> dict[str, Any]:
+def _attributes(solution: Any) -> dict[str, Any]:
     model = solution.model
     equation = None if model is None else model.equation
     return {

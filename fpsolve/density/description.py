@@ -12,16 +12,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fpsolve._support.digests import SAMPLED, digest_of, plain
-from fpsolve._support.identity import digest_or_none
 from fpsolve.density.schemes import DriftKick, SemiLagrangian
 from fpsolve.evolution.schedule import Schedule, make_schedule
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.model.curves.samples import digest_of_curve
+from fpsolve.model.identity import digest_or_none
 from fpsolve.model.laydown import LayDownModel
 from fpsolve.model.potentials.samples import digest_of_potential
 
 if TYPE_CHECKING:
-    from fpsolve.density.solve import Scheme
+    from fpsolve.density.schemes.scheme import Scheme
 
 __all__ = ["CODE", "RunDescription", "describe_scheme", "run_arguments"]
 

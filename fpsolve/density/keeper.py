@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-if TYPE_CHECKING:
-    from fpsolve.density.run import Run
-    from fpsolve.evolution.schedule import Schedule
+from fpsolve.density.one_pass import Pass
+from fpsolve.evolution.schedule import Schedule
 
 __all__ = ["MemoryKeeper", "MemoryKeepers"]
 
@@ -39,9 +38,9 @@ class MemoryKeeper:
         self.kept = np.empty((n_saves, *shape))
         self.n_saved = 0
 
-    def begin(self, run: Run) -> int | None:
-        """Take a pass to where it goes on; None at its beginning."""
-        return None
+    def begin(self, run: Pass) -> bool:
+        """Take a pass to where it goes on; False at its beginning."""
+        return False
 
     def save(self, p: Array) -> None:
         """Keep a copy of a density."""
@@ -51,13 +50,13 @@ class MemoryKeeper:
     def absorb(self, rows: list[Row]) -> None:
         """Take rows out of memory that are kept elsewhere."""
 
-    def after(self, run: Run) -> None:
+    def after(self, run: Pass) -> None:
         """Do what is to be done after a record."""
 
-    def finish(self, run: Run) -> None:
+    def finish(self, run: Pass) -> None:
         """Do what is to be done at the end of the pass."""
 
-    def interrupted(self, run: Run) -> str:
+    def interrupted(self, run: Pass) -> str:
         """Do what is to be done after Ctrl-C; what is to be said of it."""
         return ""
 

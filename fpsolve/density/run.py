@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -11,14 +11,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fpsolve._support.progress import ProgressCallback
-from fpsolve._support.provenance import Stopwatch
 from fpsolve.density.description import describe_scheme
-from fpsolve.density.recorder import Recorder
+from fpsolve.density.keeper import MemoryKeeper
+from fpsolve.density.one_pass import Pass
+from fpsolve.density.schemes.scheme import Scheme
 from fpsolve.density.solution import Solution
+from fpsolve.density.tolerances import Tolerances, check_laws
 from fpsolve.errors import (
-    CirculationError,
     DomainTooSmallError,
-    EntropyRiseError,
     MassDriftError,
     NegativeDensityError,
     NonFiniteDensityError,
@@ -29,24 +29,14 @@ from fpsolve.evolution.schedule import Schedule
 
 if TYPE_CHECKING:
     from fpsolve.density.checkpoints.keeper import CheckpointKeeper
-    from fpsolve.density.keeper import MemoryKeeper
-    from fpsolve.density.solve import Scheme, Tolerances
 
-__all__ = ["Run", "check_laws"]
+__all__ = ["Run"]
 
 Array = NDArray[np.float64]
 
 
-class Run:
-    """One pass over a schedule.
-
-    Attributes
-    ----------
-    step : int
-        Steps done at the last record.
-    settled : bool
-        Whether the state is that of the last record: between two it is not.
-    """
+class Run(Pass):
+    """One pass over a schedule, from its start or its last checkpoint to the end."""
 
     def __init__(
         self,
@@ -58,14 +48,10 @@ class Run:
         schedule: Schedule,
         keeper: MemoryKeeper | CheckpointKeeper,
     ) -> None:
-        self.scheme, self.schedule = scheme, schedule
-        self.recorder = Recorder(scheme.model, scheme.grid, reference)
+        super().__init__(scheme, p0, reference, schedule)
         self.tolerances, self.keeper = tolerances, keeper
         self.p0, self.reference, self.arguments = p0, reference, arguments
-        self.state = scheme.start(p0)
         self.saves = frozenset(schedule.saves)
-        self.step, self.settled = 0, False
-        self.watch = Stopwatch()
 
     def complete(
         self,
@@ -98,11 +84,9 @@ class Run:
 
     def _begin(self) -> None:
         """Record the start, or go to where the run was left."""
-        reached = self.keeper.begin(self)
-        if reached is None:
+        if not self.keeper.begin(self):
             self._record(0)
         else:
-            self.step = reached
             kept = self.keeper.series(self.recorder.columns, self.recorder.rows)
             self.recorder.go_on(kept)
         self.settled = True
@@ -195,14 +179,3 @@ class Run:
             return self.p0.copy()
         self.state.work[...] = self.p0
         return self.state.work
-
-
-def check_laws(values: Mapping[str, float], allowed: Tolerances) -> None:
-    """Raise if a record breaks what holds on a belt at rest; see `Recorder`."""
-    rise = values.get("entropy_rise", 0.0)
-    # An infinite tolerance asks not to be told, not even of NaN.
-    if not (rise <= allowed.entropy or math.isinf(allowed.entropy)):
-        raise EntropyRiseError(values["s"], rise, allowed.entropy)
-    deviation = values.get("circulation_deviation", 0.0)
-    if not (abs(deviation) <= allowed.circulation or math.isinf(allowed.circulation)):
-        raise CirculationError(values["s"], deviation, allowed.circulation)

@@ -6,11 +6,14 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from fpsolve._support.netcdf import write_dataset
+from fpsolve.density.dataset import stored_parts, to_xarray
+from fpsolve.density.error_laws import mean_square_force, slope_at_origin
 from fpsolve.evolution.decay import DecayRate, fit_decay
 from fpsolve.evolution.schedule import saved_index
 from fpsolve.grids import diagnostics
@@ -71,6 +74,8 @@ class Solution:
     reference : ndarray or None
         What the entropy is relative to, if it was given.
     """
+
+    kind: ClassVar[str] = "solution"
 
     model: LayDownModel | None
     grid: PhaseSpaceGrid
@@ -153,8 +158,6 @@ class Solution:
 
     def _kink_error(self) -> float:
         """Relative error of a decay rate from cells about a kink of B."""
-        from fpsolve.density.suggestions import slope_at_origin
-
         if self.model is None:
             return 0.0
         # A box holds four deviations or more.
@@ -164,8 +167,6 @@ class Solution:
 
     def _step_error(self) -> float:
         """Relative error of a decay rate from the step; 0 without a model."""
-        from fpsolve.density.suggestions import mean_square_force
-
         if self.model is None:
             return 0.0
         force = mean_square_force(self.model, self.grid)
@@ -176,12 +177,9 @@ class Solution:
 
     def to_xarray(self) -> xarray.Dataset:
         """Labelled Dataset: densities (s, xi1, xi2, alpha), series over step."""
-        from fpsolve.results import to_xarray
-
         return to_xarray(self)
 
     def save(self, path: str | Path, engine: str | None = None) -> Path:
         """Write the solution to netCDF, or to zarr for a path that ends in .zarr."""
-        from fpsolve.results import save
-
-        return save(self, path, engine=engine)
+        dataset, streamed = stored_parts(self)
+        return write_dataset(dataset, path, engine, streamed)

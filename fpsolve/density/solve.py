@@ -5,55 +5,35 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fpsolve._kernels.threads import threads_worth_their_wait
 from fpsolve._support.blas import one_blas_thread
-from fpsolve._support.checks import check_flag, check_tolerance, shown
+from fpsolve._support.checks import check_flag
 from fpsolve._support.memory import check_memory, required_memory
 from fpsolve._support.progress import ProgressCallback, reporting
 from fpsolve._support.provenance import announced_compilation
+from fpsolve.density.checkpoints.checkpoint import Checkpoint, as_checkpoint
 from fpsolve.density.description import RunDescription, run_arguments
+from fpsolve.density.extrapolation import extrapolated
 from fpsolve.density.keeper import MemoryKeepers
 from fpsolve.density.run import Run
-from fpsolve.density.schemes.form import State
+from fpsolve.density.schemes.scheme import Scheme, checked_scheme, checked_start
 from fpsolve.density.solution import Solution
-from fpsolve.evolution.extrapolation import extrapolated
+from fpsolve.density.tolerances import Tolerances
 from fpsolve.evolution.schedule import Schedule, checked_stops, make_schedule
 from fpsolve.grids.diagnostics import checked_reference
-from fpsolve.grids.phase_space import PhaseSpaceGrid
-from fpsolve.model.laydown import LayDownModel
 
 if TYPE_CHECKING:
-    from fpsolve.density.checkpoints import Checkpoint
     from fpsolve.density.checkpoints.folder import CheckpointFolder
 
-__all__ = ["Scheme", "solve"]
+__all__ = ["solve"]
 
 Array = NDArray[np.float64]
-
-
-class Scheme(Protocol):
-    """What `solve` needs of a scheme; see docs/extending.md."""
-
-    name: str
-    order: int
-    model: LayDownModel
-    grid: PhaseSpaceGrid
-    correction_limit: float
-
-    @property
-    def options(self) -> dict[str, Any]: ...  # noqa: D102
-    @property
-    def n_arrays(self) -> float: ...  # noqa: D102
-    def start(self, p0: Array) -> State: ...  # noqa: D102
-    def density(self, state: State) -> Array: ...  # noqa: D102
-    def advance(self, state: State, s: float, ds: float, n_steps: int = 1) -> None: ...  # noqa: D102
 
 
 @one_blas_thread()
@@ -215,46 +195,8 @@ def _keepers(
     """What hands out the keepers of the passes."""
     if checkpoint is None:
         return nullcontext(MemoryKeepers(scheme.grid.shape))
-    from fpsolve.density.checkpoints.checkpoint import as_checkpoint
+    # zarr and its locks are loaded for those who ask for them.
     from fpsolve.density.checkpoints.folder import opened_folder
 
     run = RunDescription.of(scheme, p0, reference, arguments)
     return opened_folder(as_checkpoint(checkpoint), run, p0, reference)
-
-
-@dataclass(frozen=True)
-class Tolerances:
-    """What a run puts up with before it stops."""
-
-    mass: float
-    boundary: float
-    negative: float
-    entropy: float = 0.1
-    circulation: float = 0.05
-
-    def __post_init__(self) -> None:
-        for name, value in vars(self).items():
-            check_tolerance(f"{name}_tolerance", value)
-
-
-def checked_scheme(scheme: Any, name: str = "scheme") -> Scheme:
-    """The scheme; TypeError unless it has what `solve` needs."""
-    needed = ("model", "grid", "start", "density", "advance")
-    if isinstance(scheme, type) or not all(hasattr(scheme, name) for name in needed):
-        raise TypeError(
-            f"`{name}` must be a scheme, got {shown(scheme)}; make one by "
-            "drift_kick(model, grid)."
-        )
-    made: Scheme = scheme
-    return made
-
-
-def checked_start(scheme: Scheme, p0: Array) -> Array:
-    """The initial density if it fits the scheme's grid and is finite with mass."""
-    p0 = scheme.grid.check(p0, "p0")
-    if not np.isfinite(p0).all():
-        index = tuple(int(i) for i in np.argwhere(~np.isfinite(p0))[0])
-        raise ValueError(f"`p0` must be finite, got {p0[index]:g} at index {index}.")
-    if not p0.sum() > 0:
-        raise ValueError(f"`p0` must have positive mass, got {p0.sum():g}.")
-    return p0

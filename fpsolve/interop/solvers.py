@@ -12,10 +12,10 @@ from pde.solvers import SolverBase
 
 from fpsolve._support.checks import check_positive
 from fpsolve.density.recorder import Recorder
-from fpsolve.density.run import check_laws
 from fpsolve.density.schemes import DriftKick, SemiLagrangian
 from fpsolve.density.schemes.form import State
-from fpsolve.density.solve import Scheme, Tolerances, checked_start
+from fpsolve.density.schemes.scheme import Scheme, checked_start
+from fpsolve.density.tolerances import Tolerances, check_laws
 from fpsolve.errors import (
     DomainTooSmallError,
     MassDriftError,

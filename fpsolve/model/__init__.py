@@ -1,1 +1,1 @@
-"""The continuous problem: potential, reference curve, noise; from a process in SI units."""
+"""The continuous problem: potential, reference curve, noise; a process in SI units."""

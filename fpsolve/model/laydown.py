@@ -150,6 +150,26 @@ class LayDownModel:
             unknowns.append(f"γ(s) = {self.curve.formula}")
         return f"{terms}, {', '.join(unknowns)}"
 
+    @property
+    def process_equation(self) -> str:
+        """The stochastic equation (6) as plain text with the actual parameters."""
+        curve = self.curve
+        motion = "τ(α) ds - dγ"
+        if curve.fixed:
+            motion = "τ(α) ds"
+        elif curve.autonomous:
+            sign = "-" if curve.speed < 0 else "+"
+            motion = f"(τ(α) {sign} {abs(curve.speed):g} e₁) ds"
+        noise = f" + {self.noise:g} dW" if self.noise else ""
+        terms = [
+            f"dξ = {motion}",
+            f"dα = -∇B(ξ)·τ⊥(α) ds{noise}",
+            f"B = {self.potential.formula}",
+        ]
+        if not curve.autonomous:
+            terms.append(f"γ(s) = {curve.formula}")
+        return ", ".join(terms)
+
     def to_dict(self) -> dict[str, Any]:
         """Return the model as a JSON-able dictionary.
 

@@ -88,9 +88,8 @@ def _equations(paths: Paths) -> list[Block]:
     if model is None:
         return unread_model(paths.provenance)
     from fpsolve.pages.equations import mathml, potential_equation
-    from fpsolve.paths.dataset import process_equation
 
-    position, angle, *_ = process_equation(model).split(", ")
+    position, angle, *_ = model.process_equation.split(", ")
     curve = model.curve
     motion = r"\tau(\alpha)\,ds - d\gamma"
     if curve.fixed:

@@ -125,10 +125,10 @@ def _section_of_study(result: Any) -> Section:
     if isinstance(result, xr.Dataset):
         return _section_of_dataset(result, "")
     from fpsolve.reduced.energy import EnergyProcess
-    from fpsolve.reduced.energy.dataset import tables_dataset
+    from fpsolve.spectral.eigen.dataset import spectrum_dataset
     from fpsolve.spectral.eigen.spectrum import Spectrum
     from fpsolve.studies.agreement.check import CrossCheck
-    from fpsolve.studies.rates.dataset import spectrum_dataset
+    from fpsolve.studies.energy_tables import tables_dataset
 
     if isinstance(result, CrossCheck):
         return _section_of_dataset(result.to_xarray(), "")
@@ -146,7 +146,7 @@ def _section_of_dataset(dataset: xr.Dataset, source: str) -> Section:
     title = declared(dataset.attrs).get("title", "")
     if title == _CROSS_CHECK:
         from fpsolve.pages.studies import origin_of
-        from fpsolve.studies.agreement.dataset import from_xarray as read_check
+        from fpsolve.studies.agreement.reading import from_xarray as read_check
 
         return _written(
             "cross_check", "section", read_check(dataset), source, origin_of(dataset)

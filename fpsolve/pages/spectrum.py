@@ -2,14 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-import numpy as np
-from numpy.typing import NDArray
-
 from fpsolve._support.declared import declared
-from fpsolve.model.laydown import LayDownModel
 from fpsolve.pages.blocks import (
     Equation,
     Facts,
@@ -23,6 +18,7 @@ from fpsolve.pages.equations import model_equations
 from fpsolve.pages.figures import embedded
 from fpsolve.pages.settings import curve_text
 from fpsolve.pages.studies import versions_part
+from fpsolve.spectral.eigen.stored import StoredSpectrum, stored_spectrum
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -30,20 +26,9 @@ if TYPE_CHECKING:
 __all__ = ["section"]
 
 
-@dataclass(frozen=True)
-class StoredSpectrum:
-    """What a file holds of a Spectrum: enough to draw it."""
-
-    model: LayDownModel
-    eigenvalues: NDArray[np.complex128]
-    sectors: list[str]
-    gap: float
-    essential: float | None
-
-
 def section(dataset: xr.Dataset, source: str) -> Section:
     """Return the section of a page about a spectrum."""
-    spectrum = _stored(dataset)
+    spectrum = stored_spectrum(dataset)
     model, about = spectrum.model, declared(dataset.attrs)
     items = [
         ("potential", f"B = {model.potential.formula}"),
@@ -68,17 +53,6 @@ def section(dataset: xr.Dataset, source: str) -> Section:
         versions_part(dataset),
     ]
     return Section("Eigenvalues of the generator", source, parts)
-
-
-def _stored(dataset: xr.Dataset) -> StoredSpectrum:
-    about = declared(dataset.attrs)
-    return StoredSpectrum(
-        model=LayDownModel.from_dict(about["model"]),
-        eigenvalues=dataset["real"].to_numpy() + 1j * dataset["imag"].to_numpy(),
-        sectors=[str(sector) for sector in dataset["sector"].to_numpy()],
-        gap=about["gap"],
-        essential=about.get("essential"),
-    )
 
 
 def _table(dataset: xr.Dataset, spectrum: StoredSpectrum) -> Table:

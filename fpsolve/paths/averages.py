@@ -2,24 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any, TypeAlias
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fpsolve._support.arrays import check_answers
 from fpsolve._support.checks import check_call
-from fpsolve.paths.ensemble import angle_of
-from fpsolve.paths.trajectory import traced
-
-if TYPE_CHECKING:
-    from fpsolve.paths.result import Paths
+from fpsolve.paths.ensemble import Ensemble, angle_of
 
 __all__ = ["Observable", "observed", "time_averages"]
 
 Array = NDArray[np.float64]
 Observable: TypeAlias = Callable[[Array, Array, Array], Any]
+Legs: TypeAlias = Iterable[tuple[int, Array]]
+Trace: TypeAlias = Callable[[int, int], Legs]
 
 # Paths whose states are held at every step of a leg.
 GROUP = 1024
@@ -50,24 +48,35 @@ def observed(f: Observable, xi1: Array, xi2: Array, alpha: Array) -> Array:
     return np.broadcast_to(values, xi1.shape)
 
 
-def time_averages(paths: Paths, functions: Sequence[Observable]) -> Array:
-    """(1/s)∫ f ds by the trapezoidal rule; shape (n_functions, n_saved, n_paths)."""
-    averages = np.empty((len(functions), len(paths.s), paths.n_paths))
-    for first in range(0, paths.n_paths, GROUP):
-        n = min(GROUP, paths.n_paths - first)
-        averages[:, :, first : first + n] = group_averages(paths, functions, first, n)
+def time_averages(
+    ensemble: Ensemble, trace: Trace, functions: Sequence[Observable]
+) -> Array:
+    """(1/s)∫ f ds by the trapezoidal rule; shape (n_functions, n_saved, n_paths).
+
+    Parameters
+    ----------
+    ensemble : Ensemble
+    trace : callable
+        ``trace(first, n)`` yields the states of some paths leg by leg; see `traced`.
+    functions : sequence of callables
+    """
+    saves, n_paths = ensemble.schedule.saves, ensemble.n_paths
+    averages = np.empty((len(functions), len(saves), n_paths))
+    for first in range(0, n_paths, GROUP):
+        n = min(GROUP, n_paths - first)
+        group = slice(first, first + n)
+        averages[:, :, group] = group_averages(saves, trace(first, n), functions, n)
     return averages
 
 
 def group_averages(
-    paths: Paths, functions: Sequence[Observable], first: int, n: int
+    saves: Sequence[int], legs: Legs, functions: Sequence[Observable], n: int
 ) -> Array:
     """The averages of a group of paths; shape (n_functions, n_saved, n)."""
-    saves = paths.ensemble.schedule.saves
     averages = np.full((len(functions), len(saves), n), np.nan)
     # Sums over all steps so far; the ends of the trapezoidal rule count one half.
     sums, starts = np.zeros((2, len(functions), n))
-    for step, states in traced(paths, first, n):
+    for step, states in legs:
         xi1, xi2, alpha = states[:, 0], states[:, 1], angle_of(states)
         inside = [at for at, stop in enumerate(saves) if 0 <= stop - step < len(states)]
         for row, f in enumerate(functions):

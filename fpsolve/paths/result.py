@@ -2,24 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any, ClassVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve._support.checks import check_integer
+from fpsolve._support.checks import check_integer, check_real
+from fpsolve._support.memory import check_memory
+from fpsolve._support.netcdf import write_dataset
 from fpsolve.evolution.schedule import saved_index
 from fpsolve.grids.phase_space import PhaseSpaceGrid, check_grid
 from fpsolve.model.laydown import LayDownModel
 from fpsolve.paths.averages import Observable, observed, time_averages
+from fpsolve.paths.dataset import to_xarray
 from fpsolve.paths.ensemble import Ensemble, angle_of
 from fpsolve.paths.histogram import Histogram, count_paths, wrapped
 from fpsolve.paths.moments import Moments
-from fpsolve.paths.trajectory import Trajectory, trajectory
+from fpsolve.paths.runner import completed, required_memory, stepwise
+from fpsolve.paths.trajectory import Trajectory, traced, trajectory
 
 if TYPE_CHECKING:
     import xarray
@@ -57,6 +61,8 @@ class Paths:
     provenance : dict
         Versions, date, times, number of path-steps.
     """
+
+    kind: ClassVar[str] = "paths"
 
     ensemble: Ensemble
     s: Array
@@ -223,9 +229,10 @@ class Paths:
             nothing to average.
         """
         if isinstance(f, tuple | list):
-            return time_averages(self, f)
-        alone: Array = time_averages(self, [cast(Observable, f)])[0]
-        return alone
+            return time_averages(self.ensemble, self._traced, f)
+        alone = [cast(Observable, f)]
+        found: Array = time_averages(self.ensemble, self._traced, alone)[0]
+        return found
 
     def replay(self, k: int, every: int = 1) -> Trajectory:
         """Path k from its start to the end, at every step or every few.
@@ -244,7 +251,8 @@ class Paths:
             raise ValueError(
                 f"`k` must be below the number of paths {self.n_paths}, got {k}."
             )
-        return trajectory(self, k, check_integer("every", every, 1))
+        every = check_integer("every", every, 1)
+        return trajectory(self.ensemble, self._traced(k, 1), every)
 
     def continued(
         self,
@@ -275,9 +283,15 @@ class Paths:
         MemoryLimitError
             If the result would not fit into memory.
         """
-        from fpsolve.paths.sampling import go_on
+        ensemble = _going_on(self, s_end, save_at)
+        longer: Paths = completed(Paths, ensemble, self, None, progress)
+        return longer
 
-        return go_on(self, s_end, save_at, progress)
+    def _traced(self, first: int, n: int) -> Iterator[tuple[int, Array]]:
+        """The states of some of the paths at every step, leg by leg."""
+        self.check_model()
+        end = self.end[:, first : first + n] if self.kept else None
+        return traced(self.ensemble, first, self.states_at_start(first, n), end)
 
     def states_at_start(self, first: int, n: int) -> Array:
         """States (5, n) at which some of the paths begin."""
@@ -293,15 +307,11 @@ class Paths:
 
     def to_xarray(self) -> xarray.Dataset:
         """Labelled Dataset of positions, moments and histograms."""
-        from fpsolve.results import to_xarray
-
         return to_xarray(self)
 
     def save(self, path: str | Path, engine: str | None = None) -> Path:
         """Write the paths to netCDF, or to zarr for a path that ends in .zarr."""
-        from fpsolve.results import save
-
-        return save(self, path, engine=engine)
+        return write_dataset(self.to_xarray(), path, engine)
 
     def _kept(self, array: Array) -> Array:
         if not self.kept:
@@ -317,3 +327,30 @@ class Paths:
             return len(self.s) - 1
         wanted = np.nan if s is None else s
         return saved_index(np.asarray(self.s), wanted, self.ds, "add it to `save_at`")
+
+
+def _going_on(paths: Paths, s_end: float, save_at: Iterable[float] | None) -> Ensemble:
+    """The ensemble of the same paths from their end on to `s_end`."""
+    if not paths.kept:
+        raise ValueError(
+            "the states must have been kept to go on, got paths sampled with "
+            "keep=False; sample with keep=True."
+        )
+    paths.check_model()
+    before = paths.ensemble.schedule
+    reached = before.s(before.n_steps)
+    s_end = check_real("s_end", s_end)
+    if not s_end > reached:
+        raise ValueError(
+            f"`s_end` must be beyond the end {reached:g} of the paths, got {s_end:g}."
+        )
+    schedule = stepwise(before.start, s_end, before.ds, save_at)
+    paths.ensemble.model.curve.check_span(schedule.start, schedule.end)
+    if schedule.saves and schedule.saves[0] <= before.n_steps:
+        raise ValueError(
+            f"`save_at` must lie beyond the end {reached:g} of the paths, got "
+            f"{schedule.s(schedule.saves[0]):g}."
+        )
+    ensemble = replace(paths.ensemble, schedule=schedule, first_step=before.n_steps)
+    check_memory(required_memory(ensemble), None, "save less often")
+    return ensemble

@@ -3,19 +3,15 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fpsolve._kernels.paths import N_STATE
 from fpsolve.model.curves.curve import Curve
-from fpsolve.paths.ensemble import angle_of
-
-if TYPE_CHECKING:
-    from fpsolve.paths.result import Paths
+from fpsolve.paths.ensemble import Ensemble, angle_of
 
 __all__ = ["Trajectory", "traced", "trajectory"]
 
@@ -49,14 +45,24 @@ class Trajectory:
         return self.xi + np.stack(self.curve.position(self.s), axis=-1)
 
 
-def traced(paths: Paths, first: int, n: int) -> Iterator[tuple[int, Array]]:
+def traced(
+    ensemble: Ensemble, first: int, state: Array, sampled: Array | None
+) -> Iterator[tuple[int, Array]]:
     """Number of the first step and states (n_steps, 5, n) of some paths, leg by leg.
 
     The first leg is the start alone. Warns if the end is not the one that was sampled.
+
+    Parameters
+    ----------
+    ensemble : Ensemble
+    first : int
+        Number of the first of the paths.
+    state : ndarray, shape (5, n)
+        Where they start; afterwards where they end.
+    sampled : ndarray, shape (5, n), or None
+        Where they ended when they were sampled.
     """
-    paths.check_model()
-    ensemble, state = paths.ensemble, paths.states_at_start(first, n)
-    step, end = 0, ensemble.schedule.n_steps
+    step, end, n = 0, ensemble.schedule.n_steps, state.shape[1]
     yield step, state[None].copy()
     while step < end:
         n_steps = min(LEG, end - step)
@@ -64,8 +70,8 @@ def traced(paths: Paths, first: int, n: int) -> Iterator[tuple[int, Array]]:
         ensemble.integrator.advance(state, first, step, n_steps, trace)
         yield step + 1, trace
         step += n_steps
-    if paths.kept:
-        _warn_unless_equal(state, paths.end[:, first : first + n])
+    if sampled is not None:
+        _warn_unless_equal(state, sampled)
 
 
 def _warn_unless_equal(state: Array, sampled: Array) -> None:
@@ -80,10 +86,12 @@ def _warn_unless_equal(state: Array, sampled: Array) -> None:
         )
 
 
-def trajectory(paths: Paths, k: int, every: int) -> Trajectory:
-    """Path k at its start and after every few steps, its last one included."""
-    schedule = paths.ensemble.schedule
-    states = np.concatenate([states for _, states in traced(paths, k, 1)])
+def trajectory(
+    ensemble: Ensemble, legs: Iterable[tuple[int, Array]], every: int
+) -> Trajectory:
+    """One traced path at its start and after every few steps, its last one included."""
+    schedule = ensemble.schedule
+    states = np.concatenate([states for _, states in legs])
     steps = np.arange(schedule.n_steps + 1)
     chosen = steps % every == 0
     chosen[-1] = True
@@ -92,5 +100,5 @@ def trajectory(paths: Paths, k: int, every: int) -> Trajectory:
         s=schedule.start + steps[chosen] * schedule.ds,
         xi=states[:, :2, 0].copy(),
         alpha=angle_of(states)[:, 0],
-        curve=paths.model.curve,
+        curve=ensemble.model.curve,
     )

@@ -23,15 +23,13 @@ from fpsolve.plotting.trajectories import plot_fibre, plot_trajectories
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from fpsolve.results.kinds import Result
-
     Figures = dict[str, Callable[[Any], Figure]]
 
 __all__ = ["possible_figures", "save_figures"]
 
 
 def save_figures(
-    result: Result, directory: str | os.PathLike[str], *, prefix: str = ""
+    result: Any, directory: str | os.PathLike[str], *, prefix: str = ""
 ) -> list[Path]:
     """Write every figure that the result allows as a PNG of 200 dots per inch.
 
@@ -67,7 +65,7 @@ def save_figures(
         ]
 
 
-def possible_figures(result: Result) -> Figures:
+def possible_figures(result: Any) -> Figures:
     """Names of the figures that the result allows, with what draws them."""
     return _FIGURES[_kind_of(result)](result)
 

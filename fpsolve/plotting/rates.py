@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from fpsolve.pages.spectrum import StoredSpectrum
     from fpsolve.spectral.eigen.spectrum import Spectrum
+    from fpsolve.spectral.eigen.stored import StoredSpectrum
 
 __all__ = [
     "plot_asymptotic_variance",

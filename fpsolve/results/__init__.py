@@ -1,6 +1,6 @@
-"""Results as labelled datasets and as files."""
+"""Results of every kind: from files, set side by side, computed again."""
 
-from fpsolve._support.netcdf import load, save
-from fpsolve.results.kinds import from_xarray, to_xarray
+from fpsolve.results.kinds import from_xarray
+from fpsolve.results.load import load
 
-__all__ = ["from_xarray", "load", "save", "to_xarray"]
+__all__ = ["from_xarray", "load"]

@@ -1,87 +1,66 @@
-"""Results of every kind as labelled `xarray.Dataset`, and back."""
+"""The kinds of results: what each is called, and who reads it from a dataset."""
 
 from __future__ import annotations
 
 import importlib
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from fpsolve._support.declared import declared
-from fpsolve.density.solution import Solution
-from fpsolve.paths import Paths
+from fpsolve._support.labels import FORMAT
 
 if TYPE_CHECKING:
     import xarray as xr
 
-    from fpsolve.reduced.energy import EnergySolution
-    from fpsolve.reduced.hydrodynamic import HydrodynamicSolution
+__all__ = ["KINDS", "Kind", "from_xarray", "kind_of"]
 
-    Result = Solution | Paths | HydrodynamicSolution | EnergySolution
 
-__all__ = ["FORMAT", "from_xarray", "kind_of", "marked", "to_xarray"]
+@dataclass(frozen=True)
+class Kind:
+    """One kind of result that has a class of its own.
 
-# Number of these layouts; raised whenever an older version could misread a file.
-FORMAT = 1
-# What files hold, and the module of fpsolve.io that reads and writes it. An older file
-# that does not say what it holds is a solution.
-_MODULES = {
-    "solution": "solutions",
-    "paths": "paths",
-    "hydrodynamic": "hydrodynamic",
-    "energy": "energy",
+    Attributes
+    ----------
+    words : str
+        In the plural, as messages call it.
+    reading : str
+        The module whose `from_xarray` makes the result from its dataset.
+    """
+
+    words: str
+    reading: str
+
+
+# What a result says in `kind`, and its file in `fpsolve_kind`.
+KINDS = {
+    "solution": Kind("solutions", "fpsolve.density.reading"),
+    "paths": Kind("paths", "fpsolve.paths.reading"),
+    "hydrodynamic": Kind(
+        "solutions of the hydrodynamic limit", "fpsolve.reduced.hydrodynamic.reading"
+    ),
+    "energy": Kind("solutions of the energy process", "fpsolve.reduced.energy.reading"),
 }
 
 
-def to_xarray(result: Result) -> xr.Dataset:
-    """Return a solution, p(s, ξ1, ξ2, α) with its series, or paths as a dataset.
-
-    The attribute `fpsolve_kind` says which: "solution" or "paths", or "hydrodynamic"
-    or "energy" for a solution of a limit.
-
-    Parameters
-    ----------
-    result : Solution, Paths, HydrodynamicSolution or EnergySolution
+def kind_of(result: Any) -> str:
+    """Return the key of `KINDS` for a result.
 
     Raises
     ------
     TypeError
         If it is something else.
     """
-    kind = kind_of(result)
-    dataset: xr.Dataset = _module(kind).to_xarray(result)
-    return marked(dataset, kind)
+    kind = getattr(type(result), "kind", None)
+    if not (isinstance(kind, str) and kind in KINDS):
+        raise TypeError(
+            "`result` must be a Solution, Paths, a HydrodynamicSolution or an "
+            f"EnergySolution, got {type(result).__name__}."
+        )
+    return kind
 
 
-def kind_of(result: Any) -> str:
-    """Return what a file of the result would say that it holds."""
-    if isinstance(result, Solution):
-        return "solution"
-    if isinstance(result, Paths):
-        return "paths"
-    # The limits are not imported for the others.
-    from fpsolve.reduced.energy import EnergySolution
-    from fpsolve.reduced.hydrodynamic import HydrodynamicSolution
-
-    if isinstance(result, HydrodynamicSolution):
-        return "hydrodynamic"
-    if isinstance(result, EnergySolution):
-        return "energy"
-    raise TypeError(
-        "`result` must be a Solution, Paths, a HydrodynamicSolution or an "
-        f"EnergySolution, got {type(result).__name__}."
-    )
-
-
-def _module(kind: str) -> Any:
-    return importlib.import_module(f"fpsolve.results.{_MODULES[kind]}")
-
-
-def marked(dataset: xr.Dataset, kind: str) -> xr.Dataset:
-    """Return the dataset with the attributes that say what it holds."""
-    return dataset.assign_attrs(fpsolve_kind=kind, fpsolve_format=FORMAT)
-
-
-def from_xarray(dataset: xr.Dataset) -> Result:
-    """Return the result that `to_xarray` turned into `dataset`.
+def from_xarray(dataset: xr.Dataset) -> Any:
+    """Return the result that its `to_xarray` turned into `dataset`.
 
     Arrays come back bit for bit. A model made of a user's own functions cannot be
     read back: `model` is None then, and its description and equation are in
@@ -101,7 +80,11 @@ def from_xarray(dataset: xr.Dataset) -> Result:
     UserWarning
         If the model could not be read back.
     """
-    about = declared(dataset.attrs)
+    kind = _kind_of_dataset(declared(dataset.attrs))
+    return importlib.import_module(KINDS[kind].reading).from_xarray(dataset)
+
+
+def _kind_of_dataset(about: dict[str, Any]) -> str:
     written = about.get("fpsolve_format")
     if written is None:
         if "versions" in about:
@@ -117,11 +100,10 @@ def from_xarray(dataset: xr.Dataset) -> Result:
             f"it has layout {written}, this version of fpsolve reads up to "
             f"{FORMAT}; update fpsolve"
         )
-    kind = about.get("fpsolve_kind", "solution")
-    if kind not in _MODULES:
-        known = ", ".join(map(repr, _MODULES))
+    kind: str = about.get("fpsolve_kind", "solution")
+    if kind not in KINDS:
+        known = ", ".join(map(repr, KINDS))
         raise ValueError(
             f"it holds {kind!r}, this version of fpsolve reads {known}; update fpsolve"
         )
-    found: Result = _module(kind).from_xarray(dataset)
-    return found
+    return kind

@@ -1,10 +1,10 @@
 """The names of this package, and where each of them lives."""
 
 from . import limits as limits
-from .agreement.check import AgreementTest as AgreementTest
 from .agreement.check import CrossCheck as CrossCheck
 from .agreement.cross_check import compare as compare
 from .agreement.cross_check import cross_check as cross_check
+from .agreement.outcome import AgreementTest as AgreementTest
 from .ergodicity.averages import ErgodicFit as ErgodicFit
 from .ergodicity.averages import ergodic_averages as ergodic_averages
 from .ergodicity.averages import fit_ergodic_error as fit_ergodic_error

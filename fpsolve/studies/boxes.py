@@ -15,13 +15,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fpsolve._support.checks import check_positive
-from fpsolve.density.suggestions import rounded_up
 from fpsolve.model.curves import TabulatedCurve
 from fpsolve.model.laydown import LayDownModel
 from fpsolve.model.potentials.nodes import GibbsNodes
 from fpsolve.paths import EquilibriumLaw, sample_paths
 
-__all__ = ["Travel", "box_for_travel"]
+__all__ = ["Travel", "box_for_travel", "rounded_up"]
 
 Array = NDArray[np.float64]
 
@@ -221,3 +220,9 @@ def _exponential_quantile(distance: Array, share: float, model: LayDownModel) ->
             "a box by hand."
         )
     return threshold + mean * math.log(_TAIL / share)
+
+
+def rounded_up(half_width: float) -> float:
+    """To the next eighth of the power of two below: 4.1 becomes 4.5, 0.041 0.0469."""
+    step = 2.0 ** (math.floor(math.log2(half_width)) - 3)
+    return math.ceil(half_width / step) * step

@@ -9,10 +9,10 @@ import numpy as np
 
 from fpsolve._support.checks import shown
 from fpsolve._support.declared import declared
-from fpsolve._support.identity import digest_or_none
 from fpsolve._support.labels import to_json
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.grids.plane import PlaneGrid
+from fpsolve.model.identity import digest_or_none
 from fpsolve.model.laydown import LayDownModel
 from fpsolve.model.potentials import Potential, potential_from_dict, potential_to_dict
 from fpsolve.paths.law_dataset import FORMULAS, law_from_formula

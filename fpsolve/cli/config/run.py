@@ -16,11 +16,12 @@ from fpsolve.cli.config.kinds import (
     RunSection,
     SchemeSection,
 )
-from fpsolve.density.suggestions import SuggestedStep, suggest_grid, suggest_step
+from fpsolve.density.suggestions import SuggestedStep, suggest_step
 from fpsolve.grids.initial import gaussian
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.model.laydown import LayDownModel
 from fpsolve.paths import GaussianLaw
+from fpsolve.studies.suggested_grid import suggest_grid
 
 __all__ = ["Problem", "RunConfig"]
 

@@ -14,14 +14,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fpsolve.density.checkpoints.every import Interval
-from fpsolve.density.checkpoints.snapshots import Snapshot, SnapshotFiles, fields_of
-from fpsolve.density.checkpoints.store import PassStore, rows_to_array
+from fpsolve.density.checkpoints.snapshots import SnapshotFiles
+from fpsolve.density.checkpoints.store import PassStore
+from fpsolve.density.one_pass import Pass
+from fpsolve.density.snapshot import Snapshot
 from fpsolve.errors import CheckpointError
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from fpsolve.density.run import Run
 
 __all__ = ["CheckpointKeeper"]
 
@@ -29,7 +30,7 @@ Array = NDArray[np.float64]
 
 
 class CheckpointKeeper:
-    """One pass of a run with checkpoints; see `fpsolve.keeping.MemoryKeeper`.
+    """One pass of a run with checkpoints; see `fpsolve.density.keeper.MemoryKeeper`.
 
     Data first, then the snapshot that refers to them: at every instant the newest
     snapshot on the disk finds all that it counts.
@@ -63,12 +64,14 @@ class CheckpointKeeper:
         """Densities saved so far."""
         return self.store.n_saved
 
-    def begin(self, run: Run) -> int | None:
-        """Take a pass to its last good checkpoint; the step there, or None."""
+    def begin(self, run: Pass) -> bool:
+        """Take a pass to its last good checkpoint; False if there is none."""
         for snapshot in self.files.read():
             if self.store.holds(snapshot.n_saved, snapshot.n_stored):
-                self._restore(run, snapshot)
-                return snapshot.step
+                self.store.continue_from(snapshot.n_saved, snapshot.n_stored)
+                run.restore(snapshot)
+                self.kept = snapshot
+                return True
             warnings.warn(
                 f"checkpoint `{self.files.newest}` is not used: output that belongs to "
                 f"it is missing or damaged in `{self.store.folder}`",
@@ -77,7 +80,7 @@ class CheckpointKeeper:
             )
         self.files.clear()
         self.store.continue_from(0, 0)
-        return None
+        return False
 
     def save(self, p: Array) -> None:
         """Append a density to the store."""
@@ -89,7 +92,7 @@ class CheckpointKeeper:
         with self._writing(self.store.folder / "series"):
             self.store.absorb(rows)
 
-    def after(self, run: Run) -> None:
+    def after(self, run: Pass) -> None:
         """Write a checkpoint if one is due, and heed Ctrl-C."""
         self.raise_if_interrupted()
         last = self.kept.step if self.kept else 0
@@ -101,14 +104,14 @@ class CheckpointKeeper:
         if self.interval.over(ahead, seconds):
             self._write(run)
 
-    def finish(self, run: Run) -> None:
+    def finish(self, run: Pass) -> None:
         """Write the checkpoint of a complete pass, unless it is there."""
         if self.kept is None or self.kept.step != run.step:
             with self._writing(self.store.folder / "series"):
                 self.store.absorb(run.recorder.rows, complete=True)
             self._write(run)
 
-    def interrupted(self, run: Run) -> str:
+    def interrupted(self, run: Pass) -> str:
         """Write a last checkpoint; say how to go on."""
         if run.settled and (self.kept is None or self.kept.step != run.step):
             try:
@@ -134,31 +137,8 @@ class CheckpointKeeper:
         """The saved densities, read when they are asked for."""
         return self.store.densities()
 
-    def _restore(self, run: Run, snapshot: Snapshot) -> None:
-        self.store.continue_from(snapshot.n_saved, snapshot.n_stored)
-        snapshot.restore(run.state)
-        columns = snapshot.columns
-        run.recorder.first = dict(zip(columns, snapshot.first.tolist(), strict=True))
-        run.recorder.rows = [
-            dict(zip(columns, row, strict=True)) for row in snapshot.tail.tolist()
-        ]
-        run.watch.add(*snapshot.seconds)
-        self.kept = snapshot
-
-    def _write(self, run: Run) -> None:
-        recorder = run.recorder
-        columns = tuple(recorder.first)
-        snapshot = Snapshot(
-            step=run.step,
-            s=run.schedule.s(run.step),
-            n_saved=self.store.n_saved,
-            n_stored=self.store.n_stored,
-            seconds=run.watch.seconds(),
-            columns=columns,
-            first=rows_to_array([recorder.first], columns)[0],
-            tail=rows_to_array(recorder.rows, columns),
-            state=fields_of(run.state),
-        )
+    def _write(self, run: Pass) -> None:
+        snapshot = run.snapshot(self.store.n_saved, self.store.n_stored)
         with self._writing(self.files.next_path):
             self.store.synchronise()
             self.files.write(snapshot)

@@ -6,7 +6,6 @@ import json
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import IO, Any
 
@@ -15,64 +14,15 @@ from numpy.typing import NDArray
 
 from fpsolve._support.durable import opened_npz, write_durably
 from fpsolve._support.json_text import bounded_json
-from fpsolve.density.schemes.form import State
+from fpsolve.density.snapshot import Snapshot
 
-__all__ = ["Snapshot", "SnapshotFiles"]
+__all__ = ["SnapshotFiles"]
 
 Array = NDArray[np.float64]
 
 _SLOTS = ("a", "b")
-# Scratch of the next step, and nothing before it.
-_NOT_KEPT = ("work", "scratch")
 # Prefix of the arrays of a state among the members of a file.
 _ARRAY = "state_"
-
-
-@dataclass(frozen=True)
-class Snapshot:
-    """Where a pass is, and what belongs to it.
-
-    Attributes
-    ----------
-    step : int
-        Steps done; a recorded one.
-    s : float
-    n_saved, n_stored : int
-        Densities and rows that belong to it in the store; what is beyond is not
-        part of this checkpoint.
-    seconds : (float, float)
-        Wall and CPU time spent so far.
-    columns : tuple of str
-        Names of the recorded quantities.
-    first, tail : ndarray, shapes (n_columns,) and (n, n_columns)
-        The first record, and those that are not in the store.
-    state : dict
-        Fields of the scheme's state.
-    """
-
-    step: int
-    s: float
-    n_saved: int
-    n_stored: int
-    seconds: tuple[float, float]
-    columns: tuple[str, ...]
-    first: Array
-    tail: Array
-    state: dict[str, Any]
-
-    def restore(self, state: State) -> None:
-        """Give a state these values."""
-        for name, value in self.state.items():
-            setattr(state, name, value)
-
-
-def fields_of(state: State) -> dict[str, Any]:
-    """Everything in a state that the next step depends on."""
-    return {
-        field.name: getattr(state, field.name)
-        for field in fields(state)
-        if field.name not in _NOT_KEPT
-    }
 
 
 class SnapshotFiles:

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fpsolve._support.durable import sync
+from fpsolve.density.snapshot import rows_to_array
 from fpsolve.evolution.stored import StoredDensities
 
 __all__ = ["ROWS", "PassStore"]
@@ -172,10 +173,3 @@ class PassStore:
     @staticmethod
     def _key(ndim: int, chunk: int) -> str:
         return ".".join([str(chunk), *["0"] * (ndim - 1)])
-
-
-def rows_to_array(rows: list[Row], columns: tuple[str, ...]) -> Array:
-    """Rows as an array of shape (n, n_columns)."""
-    return np.array([[row[name] for name in columns] for row in rows]).reshape(
-        -1, len(columns)
-    )

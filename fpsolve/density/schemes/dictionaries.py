@@ -7,7 +7,7 @@ from typing import Any
 
 from fpsolve.density.description import CODE
 from fpsolve.density.schemes import drift_kick, semi_lagrangian
-from fpsolve.density.solve import Scheme
+from fpsolve.density.schemes.scheme import Scheme
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.model.laydown import LayDownModel
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve.density.solve import Scheme
+from fpsolve.density.schemes.scheme import Scheme
 from fpsolve.density.stationary.estimates import DENSITY
 from fpsolve.density.stationary.evolution import Evolution
 from fpsolve.density.stationary.result import SteadyState

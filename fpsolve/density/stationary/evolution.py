@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from fpsolve._kernels.threads import threads_worth_their_wait
 from fpsolve.density.schemes import DriftKick
 from fpsolve.density.schemes.form import State
-from fpsolve.density.solve import Scheme
+from fpsolve.density.schemes.scheme import Scheme
 
 __all__ = ["Evolution", "Strides"]
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve.density.solve import Scheme
+from fpsolve.density.schemes.scheme import Scheme
 from fpsolve.density.stationary.correction import DISTURBANCE
 from fpsolve.density.stationary.estimates import DENSITY, field_error, scaled, total
 from fpsolve.density.stationary.evolution import Evolution

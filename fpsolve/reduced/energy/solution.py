@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from fpsolve._support.netcdf import write_dataset
 from fpsolve.evolution.schedule import saved_index
+from fpsolve.reduced.energy.dataset import to_xarray
 from fpsolve.reduced.energy.grid import EnergyGrid
 
 if TYPE_CHECKING:
@@ -47,6 +49,8 @@ class EnergySolution:
     status : str
         "finished" or "interrupted".
     """
+
+    kind: ClassVar[str] = "energy"
 
     process: Any
     grid: EnergyGrid
@@ -99,15 +103,11 @@ class EnergySolution:
 
     def to_xarray(self) -> xarray.Dataset:
         """Labelled Dataset: density (s, g), series over step, parameters."""
-        from fpsolve.results import to_xarray
-
         return to_xarray(self)
 
     def save(self, path: str | Path, engine: str | None = None) -> Path:
         """Write the solution to netCDF, or to zarr for a path that ends in .zarr."""
-        from fpsolve.results import save
-
-        return save(self, path, engine=engine)
+        return write_dataset(self.to_xarray(), path, engine)
 
     def __repr__(self) -> str:
         return (

@@ -1,4 +1,4 @@
-"""Solutions of the hydrodynamic limit as labelled `xarray.Dataset`, and back."""
+"""A solution of the hydrodynamic limit as a labelled `xarray.Dataset`."""
 
 from __future__ import annotations
 
@@ -6,24 +6,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fpsolve._support.declared import declared
-from fpsolve._support.labels import (
-    check_complete,
-    describe_model,
-    labels,
-    origin,
-    read_model,
-    to_json,
-)
-from fpsolve.density.layout import check_plane_layout
-from fpsolve.evolution.series import COORDINATES, long_name, read_errors, read_series
-from fpsolve.grids.plane import PlaneGrid
-from fpsolve.reduced.hydrodynamic import HydrodynamicLimit, HydrodynamicSolution
+from fpsolve._support.labels import labels, marked, origin, to_json
+from fpsolve.evolution.series import COORDINATES, long_name
+from fpsolve.model.stored import describe_model
 
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["from_xarray", "to_xarray"]
+__all__ = ["to_xarray"]
 
 # Where the limit's quantity differs from that of the full equation.
 _NAMES = {
@@ -33,12 +23,10 @@ _NAMES = {
     "minimum": "smallest value of 𝒫",
     "density_l1_error": "estimated error of: L¹ norm of 𝒫",
 }
-_NEEDED = ("s", "s_step", "density")
-_NEEDED_ATTRIBUTES = ("model", "grid", "method", "ds", "status", "provenance")
 _PLANE = ("xi1", "xi2")
 
 
-def to_xarray(solution: HydrodynamicSolution) -> xr.Dataset:
+def to_xarray(solution: Any) -> xr.Dataset:
     """Densities (s, xi1, xi2), series over s_step, and their estimated errors.
 
     Parameters
@@ -69,7 +57,7 @@ def to_xarray(solution: HydrodynamicSolution) -> xr.Dataset:
     for name, values in (solution.errors or {}).items():
         dimension = "s" if name == "density_l1" else "s_step"
         variables[f"{name}_error"] = _labelled(f"{name}_error", dimension, values)
-    return xr.Dataset(
+    dataset = xr.Dataset(
         variables,
         coords={
             name: (name, values, labels(COORDINATES[name]))
@@ -77,48 +65,10 @@ def to_xarray(solution: HydrodynamicSolution) -> xr.Dataset:
         },
         attrs=_attributes(solution),
     )
+    return marked(dataset, "hydrodynamic")
 
 
-def from_xarray(dataset: xr.Dataset) -> HydrodynamicSolution:
-    """Return the solution that `to_xarray` turned into `dataset`, bit for bit.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-
-    Raises
-    ------
-    ValueError
-        If the dataset does not have the layout of `to_xarray`.
-
-    Warns
-    -----
-    UserWarning
-        If the model was made of a user's own functions; `limit` is None then.
-    """
-    check_complete(dataset, _NEEDED, _NEEDED_ATTRIBUTES)
-    attributes = declared(dataset.attrs)
-    provenance = attributes["provenance"]
-    grid = PlaneGrid.from_dict(attributes["grid"])
-    check_plane_layout(dataset, grid, attributes)
-    model = read_model(attributes, provenance)
-    start = dataset["initial_density"].values if "initial_density" in dataset else None
-    return HydrodynamicSolution(
-        limit=None if model is None else HydrodynamicLimit(model),
-        grid=grid,
-        method=attributes["method"],
-        ds=float(attributes["ds"]),
-        series=read_series(dataset, "s_step"),
-        saved_s=dataset["s"].values,
-        densities=dataset["density"].values,
-        errors=read_errors(dataset) or None,
-        provenance=provenance,
-        initial_density=start,
-        status=attributes["status"],
-    )
-
-
-def _attributes(solution: HydrodynamicSolution) -> dict[str, Any]:
+def _attributes(solution: Any) -> dict[str, Any]:
     # Files may come without a model.
     model = None if solution.limit is None else solution.limit.model
     equation = None if model is None else model.equation

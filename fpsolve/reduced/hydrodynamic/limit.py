@@ -16,13 +16,12 @@ from fpsolve.evolution.schedule import checked_stops
 from fpsolve.grids import diagnostics
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.grids.plane import PlaneGrid, plane_of
-from fpsolve.model.laydown import LayDownModel
 from fpsolve.model.potentials import QuadraticPotential
 from fpsolve.reduced.hydrodynamic import reconstruction, run, sampling
-from fpsolve.reduced.hydrodynamic.effective_potential import check_limit
+from fpsolve.reduced.hydrodynamic.equation import LimitEquation
 from fpsolve.reduced.hydrodynamic.initial_layer import InitialLayer
 from fpsolve.reduced.hydrodynamic.ornstein_uhlenbeck import OrnsteinUhlenbeckLimit
-from fpsolve.reduced.hydrodynamic.scharfetter_gummel import generator, gibbs_masses
+from fpsolve.reduced.hydrodynamic.scharfetter_gummel import gibbs_masses
 from fpsolve.reduced.hydrodynamic.solution import (
     HydrodynamicSolution,
     HydrodynamicSteadyState,
@@ -36,7 +35,7 @@ Start = ArrayLike | Callable[..., ArrayLike]
 ROUNDING = 1e-15
 
 
-class HydrodynamicLimit:
+class HydrodynamicLimit(LimitEquation):
     """∂ₛ𝒫 = ∇·(ε∇ + ε∇B − v e₁)𝒫, ε = 1/A²: the model for large noise.
 
     The angle forgets itself over the arclength 2/A², and what is left of p is its
@@ -69,38 +68,6 @@ class HydrodynamicLimit:
     ----------
     [BGKMW08]_; [KMW09]_, section 3.1.2, equations (17) to (21).
     """
-
-    def __init__(self, model: LayDownModel) -> None:
-        self._phi = check_limit(model)
-        self.model = model
-        self.epsilon = 1.0 / model.noise**2
-
-    def __repr__(self) -> str:
-        return f"HydrodynamicLimit({self.model!r})"
-
-    def effective_potential(self, xi1: ArrayLike, xi2: ArrayLike) -> Array:
-        """Φ = B − v ξ1/ε, in the broadcast shape of the arguments."""
-        return self._phi.value(xi1, xi2)
-
-    def drift(self, xi1: ArrayLike, xi2: ArrayLike) -> tuple[Array, Array]:
-        """−ε∇B + v e₁, two arrays in the broadcast shape."""
-        slope1, slope2 = self._phi.gradient(xi1, xi2)
-        return -self.epsilon * slope1, -self.epsilon * slope2
-
-    def equilibrium(self, xi1: ArrayLike, xi2: ArrayLike) -> Array:
-        """𝒫_S = c exp(−B + v ξ1/ε), normalised on the plane.
-
-        On a moving belt it depends on the noise.
-        """
-        return self._phi.density(xi1, xi2)
-
-    def generator(self, grid: PlaneGrid | PhaseSpaceGrid) -> Any:
-        """Q of dm/ds = Q m for cell masses m, a sparse (n1 n2, n1 n2) array.
-
-        See `scharfetter_gummel.generator` for what is exact.
-        """
-        plane = plane_of(grid)
-        return generator(self._phi.on(plane), plane.spacing, self.epsilon)
 
     @one_blas_thread()
     def steady_state(

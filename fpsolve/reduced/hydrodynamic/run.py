@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,12 +15,10 @@ from fpsolve._support.provenance import Stopwatch
 from fpsolve.errors import DomainTooSmallError, RunInterrupted
 from fpsolve.evolution.schedule import Schedule, make_schedule
 from fpsolve.grids.plane import PlaneGrid
+from fpsolve.reduced.hydrodynamic.equation import LimitEquation
 from fpsolve.reduced.hydrodynamic.scharfetter_gummel import gibbs_masses
 from fpsolve.reduced.hydrodynamic.solution import HydrodynamicSolution
 from fpsolve.reduced.relaxation import Relaxation, relax, relax_extrapolated
-
-if TYPE_CHECKING:
-    from fpsolve.reduced.hydrodynamic.limit import HydrodynamicLimit
 
 __all__ = ["Arguments", "checked_start", "solve"]
 
@@ -70,7 +68,7 @@ def checked_start(given: Any, plane: PlaneGrid) -> Array:
 
 
 def solve(
-    limit: HydrodynamicLimit,
+    limit: LimitEquation,
     plane: PlaneGrid,
     arguments: Arguments,
     progress: bool | ProgressCallback,

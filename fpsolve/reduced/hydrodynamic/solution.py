@@ -5,19 +5,21 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from fpsolve._support.netcdf import write_dataset
 from fpsolve.evolution.decay import DecayRate, fit_decay
 from fpsolve.evolution.schedule import saved_index
 from fpsolve.grids.plane import PlaneGrid
+from fpsolve.reduced.hydrodynamic.dataset import to_xarray
+from fpsolve.reduced.hydrodynamic.equation import LimitEquation
 
 if TYPE_CHECKING:
     import xarray
 
-    from fpsolve.reduced.hydrodynamic.limit import HydrodynamicLimit
 
 __all__ = ["HydrodynamicSolution", "HydrodynamicSteadyState"]
 
@@ -89,7 +91,9 @@ class HydrodynamicSolution:
         "finished", "interrupted" or "failed".
     """
 
-    limit: HydrodynamicLimit | None
+    kind: ClassVar[str] = "hydrodynamic"
+
+    limit: LimitEquation | None
     grid: PlaneGrid
     method: str
     ds: float
@@ -154,12 +158,8 @@ class HydrodynamicSolution:
 
     def to_xarray(self) -> xarray.Dataset:
         """Labelled Dataset: densities (s, xi1, xi2), series over the steps."""
-        from fpsolve.results import to_xarray
-
         return to_xarray(self)
 
     def save(self, path: str | Path, engine: str | None = None) -> Path:
         """Write the solution to netCDF, or to zarr for a path that ends in .zarr."""
-        from fpsolve.results import save
-
-        return save(self, path, engine=engine)
+        return write_dataset(self.to_xarray(), path, engine)

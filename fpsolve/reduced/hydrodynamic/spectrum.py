@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fpsolve._support.checks import check_integer
 from fpsolve.grids.plane import PlaneGrid
+from fpsolve.reduced.hydrodynamic.equation import LimitEquation
 from fpsolve.reduced.hydrodynamic.scharfetter_gummel import gibbs_masses
-
-if TYPE_CHECKING:
-    from fpsolve.reduced.hydrodynamic.limit import HydrodynamicLimit
 
 __all__ = ["HydrodynamicSpectrum", "slowest_modes", "spectrum_of", "symmetrised"]
 
@@ -72,7 +70,7 @@ class HydrodynamicSpectrum:
 
 
 def spectrum_of(
-    limit: HydrodynamicLimit, plane: PlaneGrid, n_eigenvalues: int
+    limit: LimitEquation, plane: PlaneGrid, n_eigenvalues: int
 ) -> HydrodynamicSpectrum:
     """See `HydrodynamicLimit.spectrum`."""
     n = checked_count(n_eigenvalues, plane)
@@ -87,7 +85,7 @@ def spectrum_of(
 
 
 def _modes(
-    limit: HydrodynamicLimit, plane: PlaneGrid, n: int
+    limit: LimitEquation, plane: PlaneGrid, n: int
 ) -> tuple[tuple[Array, Array], Array]:
     """The slowest modes on a grid, and √π."""
     root = np.sqrt(gibbs_masses(limit.effective_potential(*plane.mesh())).ravel())

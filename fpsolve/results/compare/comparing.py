@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve.evolution.extrapolation import NOT_EXTRAPOLATED
+from fpsolve.density.extrapolation import NOT_EXTRAPOLATED
 from fpsolve.results.compare.alignment import aligned, on_arclength
 from fpsolve.results.compare.comparison import Comparison
 from fpsolve.results.compare.densities import density_distance, on_common_grid

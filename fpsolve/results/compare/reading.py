@@ -8,8 +8,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from fpsolve._support.declared import declared
+from fpsolve._support.labels import FORMAT
 from fpsolve._support.netcdf import read_dataset, reported_damage
-from fpsolve.results.kinds import FORMAT, from_xarray, to_xarray
+from fpsolve.results.kinds import from_xarray, kind_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -103,12 +104,14 @@ def kind_of_dataset(dataset: xr.Dataset, argument: str) -> str:
 
 
 def _made_dataset(result: Any) -> xr.Dataset:
+    from fpsolve.spectral.eigen.dataset import spectrum_dataset
     from fpsolve.spectral.eigen.spectrum import Spectrum
     from fpsolve.studies.agreement.check import CrossCheck
-    from fpsolve.studies.rates.dataset import spectrum_dataset
 
     if isinstance(result, CrossCheck):
         return result.to_xarray()
     if isinstance(result, Spectrum):
         return spectrum_dataset(result)
-    return to_xarray(result)
+    kind_of(result)
+    found: xr.Dataset = result.to_xarray()
+    return found

@@ -21,16 +21,16 @@ def repeat_hydrodynamic(
     from fpsolve.reduced.hydrodynamic import HydrodynamicLimit
 
     given, run = dict(overrides), solution.provenance.get("run")
-    limit = solution.limit
-    if "model" in given:
-        limit = HydrodynamicLimit(given.pop("model"))
-    if limit is None:
+    known = None if solution.limit is None else solution.limit.model
+    model = given.pop("model", known)
+    if model is None:
         raise own_code("model", solution.provenance.get("model_description", ""))
     start = given.pop("P0", solution.initial_density)
     if run is None or start is None:
         raise unrecorded("how the run began", "`HydrodynamicLimit.solve`")
     check_run(solution, run, overrides)
-    return limit.solve(start, **{"grid": solution.grid, **run, **given})
+    again = {"grid": solution.grid, **run, **given}
+    return HydrodynamicLimit(model).solve(start, **again)
 
 
 def repeat_energy(

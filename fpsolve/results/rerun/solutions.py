@@ -6,8 +6,9 @@ from dataclasses import replace
 from typing import Any
 
 from fpsolve.density.schemes.dictionaries import scheme_from_dict
+from fpsolve.density.schemes.scheme import Scheme
 from fpsolve.density.solution import Solution
-from fpsolve.density.solve import Scheme, solve
+from fpsolve.density.solve import solve
 from fpsolve.errors import NotRepeatableError
 from fpsolve.results.rerun.costs import check_run
 from fpsolve.results.rerun.missing import own_code, unrecorded
@@ -26,11 +27,10 @@ def repeat_solution(solution: Solution, overrides: dict[str, Any]) -> Solution:
     run = solution.provenance.get("run")
     p0 = given.pop("p0", solution.initial_density)
     if run is None or p0 is None:
-        new = _from_configuration(solution, {**parts, **given})
-    else:
-        check_run(solution, run, overrides)
-        arguments = {**run, "reference": solution.reference, **given}
-        new = solve(_scheme(solution, parts), p0, **arguments)
+        raise unrecorded("how the run began", "`fpsolve.solve`")
+    check_run(solution, run, overrides)
+    arguments = {**run, "reference": solution.reference, **given}
+    new = solve(_scheme(solution, parts), p0, **arguments)
     if overrides.keys() - {"progress", "model"}:
         return new
     notes = {name: solution.provenance[name] for name in NOTES
@@ -56,15 +56,3 @@ def _scheme(solution: Solution, given: dict[str, Any]) -> Scheme:
             f"the scheme could not be made again: {error} Pass it as "
             "`fpsolve.rerun(file, scheme=...)`."
         ) from None
-
-
-def _from_configuration(solution: Solution, given: dict[str, Any]) -> Solution:
-    """Files of earlier versions have the configuration, if it was a command's."""
-    toml = solution.provenance.get("configuration")
-    unknown = given.keys() - {"progress", "memory_limit"}
-    if toml is None or unknown:
-        raise unrecorded("how the run began", "`fpsolve.solve`")
-    from fpsolve.cli.config.reading import read_config
-
-    problem = read_config(toml, "the configuration in the file").build()
-    return solve(problem.scheme, problem.p0, **{**problem.arguments, **given})

@@ -99,14 +99,14 @@ def _energy_tables(
     potential: Any, noise: float, n_energies: int, n_eigenvalues: int
 ) -> xr.Dataset:
     from fpsolve.reduced.energy import EnergyProcess
-    from fpsolve.reduced.energy.dataset import tables_dataset
+    from fpsolve.studies.energy_tables import tables_dataset
 
     return tables_dataset(EnergyProcess(potential, noise), n_energies, n_eigenvalues)
 
 
 def _spectrum(**arguments: Any) -> xr.Dataset:
+    from fpsolve.spectral.eigen.dataset import spectrum_dataset
     from fpsolve.spectral.eigen.spectrum import spectrum
-    from fpsolve.studies.rates.dataset import spectrum_dataset
 
     dataset = spectrum_dataset(spectrum(**arguments))
     return dataset.assign_attrs(recipe("spectrum", arguments))

@@ -13,7 +13,6 @@ from fpsolve.density.solution import Solution
 from fpsolve.density.steady_state import SteadyState
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.studies.agreement.cell_probabilities import cell_probabilities
-from fpsolve.studies.agreement.check import MARGINALS, AgreementTest
 from fpsolve.studies.agreement.coarser import within_error
 from fpsolve.studies.agreement.goodness_of_fit import (
     Outcome,
@@ -21,6 +20,7 @@ from fpsolve.studies.agreement.goodness_of_fit import (
     largest_deviation,
     z_score,
 )
+from fpsolve.studies.agreement.outcome import MARGINALS, AgreementTest
 from fpsolve.studies.agreement.partition import (
     ELSEWHERE,
     equal_probability_bins,

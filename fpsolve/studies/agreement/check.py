@@ -13,80 +13,16 @@ from numpy.typing import NDArray
 from fpsolve.evolution.schedule import index_of
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.model.laydown import LayDownModel
+from fpsolve.studies.agreement.dataset import to_xarray
+from fpsolve.studies.agreement.outcome import AgreementTest
+from fpsolve.studies.agreement.wording import report
 
 if TYPE_CHECKING:
     import xarray
 
-__all__ = ["MARGINALS", "AgreementTest", "CrossCheck"]
+__all__ = ["CrossCheck"]
 
 Array = NDArray[np.float64]
-MARGINALS = ("xi1", "xi2", "alpha")
-
-
-@dataclass(frozen=True)
-class AgreementTest:
-    """One test at one arclength.
-
-    Attributes
-    ----------
-    s : float
-    name : str
-        "coarse cells", "cells" and "largest cell" (histogram over phase space),
-        "marginal xi1", "marginal xi2", "marginal alpha", or the name of a moment.
-    statistic : float
-        χ² of cells and the marginals, largest |z| of "largest cell", z of a moment.
-    critical : float
-        |statistic| from which on the test disagrees.
-    p_value, threshold : float
-        The test disagrees when the p-value is below the threshold.
-    detectable : float
-        Smallest disagreement that is seen with probability 0.99: an L1 distance of
-        χ² tests, a relative error of one cell, a shift of a moment.
-    difference : float
-        The disagreement found, in the unit of `detectable`; for χ² tests the excess
-        √(max(χ² − k + 1, 0)/N), zero when there is none.
-    step_error : float
-        Estimated step error of density and paths together, in the unit of
-        `detectable`; NaN where nothing is known of it.
-    grid_error : float
-        Estimated error of the density's grid, in the unit of `detectable`; the test
-        allows for it. NaN where nothing is known of it.
-    degrees : int or None
-        Degrees of freedom of χ², number of cells of "largest cell".
-    density, paths, standard_error : float
-        Both values of a moment and the standard error of that of the paths; NaN for
-        the other tests.
-    """
-
-    s: float
-    name: str
-    statistic: float
-    critical: float
-    p_value: float
-    threshold: float
-    detectable: float
-    difference: float
-    step_error: float = math.nan
-    degrees: int | None = None
-    density: float = math.nan
-    paths: float = math.nan
-    standard_error: float = math.nan
-    grid_error: float = math.nan
-
-    @property
-    def agrees(self) -> bool:
-        """Whether the p-value reaches the threshold; a NaN does not."""
-        return self.p_value >= self.threshold
-
-    @property
-    def may_be_step_error(self) -> bool:
-        """Whether the difference is at most twice the estimated step error."""
-        return abs(self.difference) <= 2 * self.step_error
-
-    @property
-    def blurred(self) -> bool:
-        """Whether step errors are more than a tenth of what would be detected."""
-        return self.step_error > 0.1 * self.detectable
 
 
 @dataclass(frozen=True, eq=False)
@@ -174,8 +110,6 @@ class CrossCheck:
         return self.agrees
 
     def __str__(self) -> str:
-        from fpsolve.studies.agreement.wording import report
-
         return report(self)
 
     def __repr__(self) -> str:
@@ -212,8 +146,6 @@ class CrossCheck:
 
     def to_xarray(self) -> xarray.Dataset:
         """Labelled Dataset: every number of the tests (s, test), marginals (s, ...)."""
-        from fpsolve.studies.agreement.dataset import to_xarray
-
         return to_xarray(self)
 
 

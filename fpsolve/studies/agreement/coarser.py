@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 
 from fpsolve.density.description import describe_scheme
 from fpsolve.density.schemes.dictionaries import scheme_from_dict
+from fpsolve.density.schemes.scheme import Scheme
 from fpsolve.density.solution import Solution
-from fpsolve.density.solve import Scheme, solve
+from fpsolve.density.solve import solve
 from fpsolve.errors import FpsolveError
 from fpsolve.grids import diagnostics
 from fpsolve.grids.phase_space import PhaseSpaceGrid

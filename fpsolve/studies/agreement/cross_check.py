@@ -16,19 +16,21 @@ from fpsolve._support.checks import check_integer, check_kind, check_real
 from fpsolve._support.progress import ProgressCallback
 from fpsolve.density.description import describe_scheme
 from fpsolve.density.schemes import drift_kick
+from fpsolve.density.schemes.scheme import Scheme
 from fpsolve.density.solution import Solution
-from fpsolve.density.solve import Scheme, solve
+from fpsolve.density.solve import solve
 from fpsolve.density.steady_state import SteadyState
 from fpsolve.errors import ToleranceError
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.model.laydown import LayDownModel
 from fpsolve.studies.agreement.at_arclength import TESTS_PER_STATION, Station
-from fpsolve.studies.agreement.check import MARGINALS, CrossCheck
+from fpsolve.studies.agreement.check import CrossCheck
 from fpsolve.studies.agreement.coarser import (
     coarser_runs,
     start_noncentrality,
     within_error,
 )
+from fpsolve.studies.agreement.outcome import MARGINALS
 from fpsolve.studies.agreement.reference import describe, model_of, places, reference_at
 from fpsolve.studies.agreement.steps import paths_step, solver_step
 from fpsolve.studies.recipe import recipe

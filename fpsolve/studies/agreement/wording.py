@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
-from fpsolve.studies.agreement.check import AgreementTest, CrossCheck
 from fpsolve.studies.agreement.goodness_of_fit import POWER
+from fpsolve.studies.agreement.outcome import AgreementTest
 from fpsolve.studies.agreement.reference import MOMENTS
 
 __all__ = ["LABELS", "detection", "finding", "report", "verdict"]
@@ -32,7 +33,7 @@ LABELS = {
 _MOST_FINDINGS = 6
 
 
-def report(check: CrossCheck) -> str:
+def report(check: Any) -> str:
     """Everything worth saying, in a few lines."""
     lines = [verdict(check), *_sources(check)]
     if check.agrees:
@@ -47,7 +48,7 @@ def report(check: CrossCheck) -> str:
     return "\n".join(lines)
 
 
-def verdict(check: CrossCheck) -> str:
+def verdict(check: Any) -> str:
     """One sentence: do density and paths agree."""
     places = listed([f"{s:g}" for s in check.s])
     n_tests = len(check.tests)
@@ -68,7 +69,7 @@ def finding(test: AgreementTest) -> str:
     )
 
 
-def false_alarm(check: CrossCheck) -> str:
+def false_alarm(check: Any) -> str:
     """How likely an alarm is when there is nothing to find."""
     threshold = check.tests[0].threshold
     return (
@@ -78,7 +79,7 @@ def false_alarm(check: CrossCheck) -> str:
     )
 
 
-def detection(check: CrossCheck) -> str:
+def detection(check: Any) -> str:
     """How large a disagreement would have been seen."""
     largest = {name: float(np.max(values)) for name, values in check.detectable.items()}
     shifts = [
@@ -94,7 +95,7 @@ def detection(check: CrossCheck) -> str:
     )
 
 
-def step_errors(check: CrossCheck) -> list[str]:
+def step_errors(check: Any) -> list[str]:
     """Whether steps, and not the mathematics, could be what disagrees."""
     known = [test for test in check.tests if not math.isnan(test.step_error)]
     if not known:
@@ -119,7 +120,7 @@ def step_errors(check: CrossCheck) -> list[str]:
     return [f"{said}."]
 
 
-def grid_errors(check: CrossCheck) -> str:
+def grid_errors(check: Any) -> str:
     """How much the tests allow for the grid, or that they do not."""
     coarser = check.solver.get("coarser")
     known = [test for test in check.tests if not math.isnan(test.grid_error)]
@@ -140,7 +141,7 @@ def grid_errors(check: CrossCheck) -> str:
     )
 
 
-def _why_unknown(check: CrossCheck) -> str:
+def _why_unknown(check: Any) -> str:
     if check.solver["extrapolated"]:
         return (
             f"The step error of {check.sampler['method']} is not estimated; halve "
@@ -159,11 +160,11 @@ def listed(words: Sequence[str], last: str = "and") -> str:
     return f"{', '.join(words[:-1])} {last} {words[-1]}"
 
 
-def _n_cells(check: CrossCheck, name: str) -> int:
+def _n_cells(check: Any, name: str) -> int:
     return max(test.degrees or 0 for test in check.tests if test.name == name) + 1
 
 
-def _sources(check: CrossCheck) -> list[str]:
+def _sources(check: Any) -> list[str]:
     solver, sampler = check.solver, check.sampler
     cells = " x ".join(map(str, check.grid.shape))
     also = " and ds/2, extrapolated" if solver["extrapolated"] else ""
@@ -174,8 +175,9 @@ def _sources(check: CrossCheck) -> list[str]:
     ]
 
 
-def _most_extreme(check: CrossCheck) -> AgreementTest:
-    return min(check.tests, key=lambda test: test.p_value)
+def _most_extreme(check: Any) -> AgreementTest:
+    least: AgreementTest = min(check.tests, key=lambda test: test.p_value)
+    return least
 
 
 def _values(test: AgreementTest) -> str:

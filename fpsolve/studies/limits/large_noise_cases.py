@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from fpsolve.density.error_laws import feature_width_of
 from fpsolve.density.schemes import drift_kick
 from fpsolve.density.solve import solve
 from fpsolve.density.steady_state import steady_state
-from fpsolve.density.suggestions import box_half_widths, feature_width_of
 from fpsolve.grids import diagnostics, initial
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.model.curves import Curve, FixedBelt, MovingBelt
@@ -29,6 +29,7 @@ from fpsolve.studies.constants.poincare import poincare_constant
 from fpsolve.studies.limits.balance import balanced_force
 from fpsolve.studies.limits.distances import distances
 from fpsolve.studies.limits.plane_limit import stationary_limit, transient_limit
+from fpsolve.studies.suggested_grid import box_half_widths
 
 __all__ = ["PARTS", "Resolution", "deviation_of", "large_noise_case", "resolution_for"]
 

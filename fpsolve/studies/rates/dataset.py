@@ -25,9 +25,8 @@ from fpsolve.studies.sweeps.sweep import Case
 if TYPE_CHECKING:
     import xarray as xr
 
-    from fpsolve.spectral.eigen.spectrum import Spectrum
 
-__all__ = ["rates_dataset", "spectrum_dataset", "theory_curves"]
+__all__ = ["rates_dataset", "theory_curves"]
 
 Array = NDArray[np.float64]
 
@@ -235,40 +234,3 @@ def _shapes(noises: Array, variances: Array) -> dict[str, Any]:
         "shape_small": ("function", coefficients[:, 0], labels("c₁c₂ of (12)")),
         "shape_large": ("function", coefficients[:, 1], labels("c₁c₃ of (12)")),
     }
-
-
-def spectrum_dataset(found: Spectrum) -> xr.Dataset:
-    """Return a spectrum as a Dataset over `index`, slowest first.
-
-    Parameters
-    ----------
-    found : Spectrum
-    """
-    import xarray as xr
-
-    values = {
-        "real": (found.eigenvalues.real, "Re λ"),
-        "imag": (found.eigenvalues.imag, "Im λ"),
-        "error": (found.errors, "error of λ"),
-        "residual": (found.residuals, "‖Lf − λf‖/‖f‖"),
-        "multiplicity": (found.multiplicities, "sectors with this eigenvalue"),
-    }
-    variables: dict[str, Any] = {
-        name: ("index", np.asarray(array), labels(meaning))
-        for name, (array, meaning) in values.items()
-    }
-    variables["sector"] = ("index", _names([str(one) for one in found.sectors]))
-    attributes = {
-        "title": "Eigenvalues of the generator",
-        "equation": found.model.equation,
-        "model": to_json(found.model.to_dict()),
-        "gap": found.gap,
-        "gap_error": found.gap_error,
-        "truncation": json.dumps([int(number) for number in found.truncation]),
-        **made_with(),
-    }
-    if found.essential is not None:
-        attributes["essential"] = found.essential
-    return xr.Dataset(
-        variables, {"index": np.arange(len(found.eigenvalues))}, attributes
-    )

@@ -13,7 +13,7 @@ from scipy.interpolate import CubicHermiteSpline
 
 from fpsolve.density.schemes import drift_kick
 from fpsolve.density.solve import solve
-from fpsolve.density.suggestions import suggest_grid, suggest_step
+from fpsolve.density.suggestions import suggest_step
 from fpsolve.evolution.decay import DecayRate, fit_decay
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.model.laydown import LayDownModel
@@ -21,6 +21,7 @@ from fpsolve.model.potentials import Potential
 from fpsolve.studies.constants.poincare import poincare_constant
 from fpsolve.studies.rates.modes import SlowestMode, relative_norm, slowest_modes
 from fpsolve.studies.starts import density_and_law
+from fpsolve.studies.suggested_grid import suggest_grid
 
 __all__ = ["Plan", "plan_relaxation", "relaxation_case"]
 

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 
 from fpsolve._support.checks import shown
 from fpsolve._support.files import atomic_path
-from fpsolve._support.identity import UnidentifiedError, identity_digest
 from fpsolve._support.provenance import versions
+from fpsolve.model.identity import UnidentifiedError, identity_digest
 
 __all__ = ["CaseStore"]
 

@@ -6,7 +6,7 @@ known by its instructions and by all that it refers to, data by its bits, and po
 and curves by what they compute as well.
 """
 
-from fpsolve._support.identity.digests import digest_or_none, identity_digest
-from fpsolve._support.identity.objects import UnidentifiedError
+from fpsolve.model.identity.digests import digest_or_none, identity_digest
+from fpsolve.model.identity.objects import UnidentifiedError
 
 __all__ = ["UnidentifiedError", "digest_or_none", "identity_digest"]

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from fpsolve._support.checks import shown
-from fpsolve._support.identity.packages import package_of_module
+from fpsolve.model.identity.packages import package_of_module
 
 __all__ = ["UnidentifiedError", "name_of", "own_entries", "state_of", "without_kept"]
 

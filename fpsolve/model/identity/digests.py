@@ -12,27 +12,27 @@ from typing import Any
 
 import numpy as np
 
-from fpsolve._support.identity.code import (
+from fpsolve.model.curves import Curve, curve_to_dict
+from fpsolve.model.curves.dictionaries import KINDS as CURVES
+from fpsolve.model.identity.code import (
     attribute_names,
     enclosed,
     facts,
     imported,
     named_globals,
 )
-from fpsolve._support.identity.objects import (
+from fpsolve.model.identity.objects import (
     UnidentifiedError,
     name_of,
     own_entries,
     state_of,
     without_kept,
 )
-from fpsolve._support.identity.packages import (
+from fpsolve.model.identity.packages import (
     package_of_class,
     package_of_file,
     package_of_module,
 )
-from fpsolve.model.curves import Curve, curve_to_dict
-from fpsolve.model.curves.dictionaries import KINDS as CURVES
 from fpsolve.model.potentials import Potential, potential_to_dict
 from fpsolve.model.potentials.dictionaries import KINDS as POTENTIALS
 

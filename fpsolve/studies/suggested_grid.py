@@ -1,0 +1,214 @@
+"""A grid from the measured error laws, with the reasons in words, its box checked."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from fpsolve.density.error_laws import (
+    INTERPOLATION_COEFFICIENT,
+    KINK_COEFFICIENT,
+    angles_for,
+    feature_width_of,
+    slope_at_origin,
+    splitting_coefficient,
+    unit_of_length,
+    unit_of_nodes,
+)  # fmt: skip
+from fpsolve.density.suggestions import check_tolerance
+from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.model.laydown import LayDownModel, check_model
+from fpsolve.model.potentials import Potential
+from fpsolve.model.potentials.nodes import GibbsNodes, gibbs_nodes
+from fpsolve.studies.boxes import box_for_travel, rounded_up
+
+__all__ = ["SuggestedGrid", "box_half_widths", "suggest_grid"]
+
+# Share of the tolerance spent on what the box cuts off; never so much that the
+# boundary mass would stop a run at its default tolerance of 1e-3.
+BOX_SHARE = 0.1
+LARGEST_LOSS = 5e-5
+# Sizes of the pattern within which the force has to balance the belt.
+WIDEST = 1e3
+# Cells beyond any machine: 32 GiB for one density.
+MOST_CELLS = 2.0**32
+
+
+class SuggestedGrid(PhaseSpaceGrid):
+    """A grid that knows why: a PhaseSpaceGrid with a `reason`.
+
+    Attributes
+    ----------
+    reason : str
+        What set the box and each number of cells.
+    """
+
+    reason: str
+
+    @classmethod
+    def because(
+        cls, half_width: tuple[float, float], shape: tuple[int, int, int], reason: str
+    ) -> SuggestedGrid:
+        """The grid with its reason."""
+        grid = cls(half_width, shape)
+        object.__setattr__(grid, "reason", reason)
+        return grid
+
+
+def suggest_grid(
+    model: LayDownModel,
+    tolerance: float = 1e-2,
+    *,
+    initial: Any = None,
+    s_end: float | None = None,
+) -> SuggestedGrid:
+    """Box and cells for an L1 error of about `tolerance`, from the measured laws.
+
+    The box holds all but a tenth of the tolerance (5e-5 at most) of e^{−B}, all wells
+    of it. Where the belt or a nozzle moves, or the start is given, it also holds 8192
+    paths and is checked with 8192 others. The cells resolve features half as wide as
+    the equilibrium, or its wells, with eight-point interpolation; a narrower start
+    needs more. Cells and angles grow as the noise falls.
+
+    Parameters
+    ----------
+    model : LayDownModel
+        Its e^{−B} must be normalisable.
+    tolerance : float
+    initial : law, optional
+        Law of the start from `fpsolve.paths`; e^{−B}/Z by default.
+    s_end : float, optional
+        Length of the run from the start of the curve; by default long enough for the
+        law to settle.
+
+    Returns
+    -------
+    SuggestedGrid
+        A PhaseSpaceGrid; `.reason` says why.
+
+    Raises
+    ------
+    ValueError
+        If the tolerance is not in (0, 1), the potential does not confine, or no box of
+        a reasonable size holds the law: paths spread without end, e^{−B} falls like a
+        power, or its wells are tiny for their distance.
+    """
+    check_model(model)
+    check_tolerance(tolerance)
+    if not model.potential.normalisable:
+        raise ValueError(
+            f"`potential` must confine, got {model.potential!r}; without a "
+            "normalisable exp(-B) no box is large enough, choose one by hand."
+        )
+    lost = min(BOX_SHARE * tolerance, LARGEST_LOSS)
+    nodes = gibbs_nodes(model.potential)
+    half_widths, held = box_of(model, nodes, lost, initial, s_end)
+    length = unit_of_nodes(nodes)
+    law = splitting_coefficient(model, sum(nodes.mean_square_forces()), length)
+    step = min(math.sqrt(tolerance / law) / length, 1.0)
+    noise = model.noise * math.sqrt(length)
+    width = feature_width_of(nodes, noise)
+    cell = width * (0.3 * tolerance * step / INTERPOLATION_COEFFICIENT) ** (1 / 8)
+    kink = slope_at_origin(model.potential, min(nodes.deviations()))
+    if kink > 0:
+        cell = min(cell, math.sqrt(0.5 * tolerance / KINK_COEFFICIENT) / kink)
+    n1, n2 = (even_cells(2 * half / cell) for half in half_widths)
+    n_alpha = angles_for(noise)
+    check_size(n1, n2, n_alpha, half_widths, width)
+    reason = (
+        f"half widths {half_widths[0]:g} and {half_widths[1]:g} {held}; cells of "
+        f"{cell:.2g} resolve features of width {width:.2g} with eight-point "
+        f"interpolation; {n_alpha} angles suit A = {model.noise:g}"
+    )
+    if kink > 0:
+        reason += f"; the kink of slope {kink:.2g} at the origin limits the cells"
+    reason += "."
+    return SuggestedGrid.because(half_widths, (n1, n2, n_alpha), reason)
+
+
+def box_of(
+    model: LayDownModel,
+    nodes: GibbsNodes,
+    lost: float,
+    initial: Any,
+    s_end: float | None,
+) -> tuple[tuple[float, float], str]:
+    """Half widths of a box that holds the law, and what they leave outside."""
+    if not nodes.unknown < lost / 2:
+        raise ValueError(
+            f"`potential` must fall fast enough for a box, got {model.potential!r}: "
+            f"a share of {nodes.unknown:.2g} of exp(-B) lies farther out than 1e8; "
+            "choose a box by hand."
+        )
+    half1, half2 = nodes.half_widths(lost)
+    if model.curve.fixed and initial is None:
+        half_widths = rounded_up(half1), rounded_up(half2)
+        if nodes.outside(half_widths) > lost:
+            half1, half2 = nodes.half_widths(lost / 2)
+            half_widths = rounded_up(half1), rounded_up(half2)
+        outside = nodes.outside(half_widths)
+        return half_widths, f"leave {outside:.1e} of exp(-B) outside"
+    shift = belt_shift(model)
+    travel = box_for_travel(model, nodes, (half1 + shift, half2), lost, initial, s_end)
+    belt = "" if model.curve.fixed else f", belt shift {shift:.2g}"
+    held = f"leave less than {lost:.1g} outside ({travel.text}{belt})"
+    return travel.half_widths, held
+
+
+def check_size(
+    n1: int, n2: int, n_alpha: int, half_widths: tuple[float, float], width: float
+) -> None:
+    """Raise if the grid is beyond any machine."""
+    if not float(n1) * n2 * n_alpha <= MOST_CELLS:
+        raise ValueError(
+            f"`model` must have a pattern that a grid can hold, got features of width "
+            f"{width:.2g} in a box of half widths {half_widths[0]:g} and "
+            f"{half_widths[1]:g}: {n1} x {n2} x {n_alpha} cells; move the minimum of B "
+            "to the origin, or choose a grid by hand."
+        )
+
+
+def box_half_widths(potential: Potential, lost: float) -> tuple[float, float]:
+    """Half widths outside which e^{−B} has the share `lost`, direction by direction."""
+    return gibbs_nodes(potential).half_widths(lost)
+
+
+def belt_shift(model: LayDownModel) -> float:
+    """Where the belt moves the mean of ξ1: |∂₁B| = A²k/2 with I₁(k)/I₀(k) = v.
+
+    From where B is lowest along the belt; zero where the force never gets that strong.
+    """
+    from scipy.optimize import brentq
+    from scipy.special import i0e, i1e
+
+    speed = abs(model.belt_speed)
+    if speed == 0:
+        return 0.0
+    # At twice 1/(1 − v) the ratio 1 − 1/(2k) − … is beyond v.
+    opening = float(brentq(lambda k: i1e(k) / i0e(k) - speed, 0.0, 2 / (1 - speed)))
+    force = 0.5 * model.noise * model.noise * opening
+
+    def excess(x: float) -> float:
+        return float(model.potential.gradient(x, 0.0)[0]) - force
+
+    widest = WIDEST * unit_of_length(model.potential)
+    centre = 0.0
+    if float(model.potential.gradient(0.0, 0.0)[0]) != 0:
+        centre = lowest_on_belt(model.potential, widest)
+    if not excess(centre) < 0 < excess(widest):
+        return 0.0
+    xtol = 2e-12 * widest / WIDEST
+    return float(brentq(excess, centre, widest, xtol=xtol)) - centre
+
+
+def lowest_on_belt(potential: Potential, widest: float) -> float:
+    """About where B is lowest along ξ2 = 0."""
+    places = np.linspace(-widest, widest, 20001)
+    return float(places[np.argmin(potential.value(places, 0.0))])
+
+
+def even_cells(number: float) -> int:
+    """Next multiple of eight, at least sixteen."""
+    return max(16, 8 * math.ceil(number / 8))
