@@ -13,8 +13,8 @@ from fpsolve.cli.errors import FAILED, reported_errors
 from fpsolve.cli.run import Config, Example, NoFigures, Out, Threads
 
 if TYPE_CHECKING:
-    from fpsolve.cli.config import Problem
-    from fpsolve.studies import CrossCheck
+    from fpsolve.cli.config.run import Problem
+    from fpsolve.studies.agreement.check import CrossCheck
 
 __all__ = ["check"]
 
@@ -120,7 +120,7 @@ def _compare(
 ) -> CrossCheck:
     # Not `from fpsolve.cli.progress import`: a test replaces the bar in its module.
     from fpsolve.cli import progress
-    from fpsolve.studies import cross_check
+    from fpsolve.studies.agreement.cross_check import cross_check
 
     tolerances = {
         name: value

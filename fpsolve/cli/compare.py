@@ -11,7 +11,8 @@ from fpsolve.cli.errors import FAILED, reported_errors
 from fpsolve.cli.run import NoFigures
 
 if TYPE_CHECKING:
-    from fpsolve.results.compare import Comparison, Difference
+    from fpsolve.results.compare.comparison import Comparison
+    from fpsolve.results.compare.differences import Difference
 
 __all__ = ["compare", "print_comparison"]
 
@@ -50,7 +51,9 @@ def compare(
     tolerance, and 1 if they are not.
     """
     with reported_errors():
-        from fpsolve.results.compare import compare as compare_results
+        from fpsolve.results.compare.comparing import (
+            compare as compare_results,
+        )
 
         if tolerance is not None:
             from fpsolve._support.checks import check_positive

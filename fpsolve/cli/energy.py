@@ -23,7 +23,7 @@ from fpsolve.cli.run import NoFigures, Out
 if TYPE_CHECKING:
     import xarray as xr
 
-    from fpsolve.reduced.energy import EnergyProcess
+    from fpsolve.reduced.energy.process import EnergyProcess
 
 __all__ = ["energy"]
 
@@ -83,7 +83,7 @@ def energy(
 
         check_folder(out, "--out")
         from fpsolve.cli.writing import check_outputs
-        from fpsolve.reduced.energy import EnergyProcess
+        from fpsolve.reduced.energy.process import EnergyProcess
         from fpsolve.studies.energy_tables import tables_dataset
 
         check_outputs(out, "energy.nc", *(f"energy-{name}.png" for name in _FIGURES))

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 from fpsolve.cli.plan import units_text, with_options
 
 if TYPE_CHECKING:
-    from fpsolve.cli.config import PathsConfig, PathsProblem
-    from fpsolve.paths import Paths
+    from fpsolve.cli.config.paths import PathsConfig, PathsProblem
+    from fpsolve.paths.result import Paths
 
 __all__ = ["print_moments", "print_paths_plan"]
 

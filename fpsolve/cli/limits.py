@@ -25,7 +25,7 @@ from fpsolve.cli.run import NoFigures, Out
 if TYPE_CHECKING:
     import xarray as xr
 
-    from fpsolve.model.potentials import Potential
+    from fpsolve.model.potentials.potential import Potential
 
 __all__ = ["limits"]
 

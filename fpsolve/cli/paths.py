@@ -11,8 +11,8 @@ from fpsolve.cli.errors import FAILED, INTERRUPTED, fail, reported_errors
 from fpsolve.cli.run import NoFigures, Out, Threads
 
 if TYPE_CHECKING:
-    from fpsolve.cli.config import PathsConfig
-    from fpsolve.paths import Paths
+    from fpsolve.cli.config.paths import PathsConfig
+    from fpsolve.paths.result import Paths
 
 __all__ = ["paths"]
 
@@ -67,7 +67,9 @@ def paths(
 
 
 def _read(config: Path | None) -> PathsConfig:
-    from fpsolve.cli.config import PATHS_EXAMPLE, PathsConfig, example_path, load_config
+    from fpsolve.cli.config.examples import PATHS_EXAMPLE, example_path
+    from fpsolve.cli.config.paths import PathsConfig
+    from fpsolve.cli.config.reading import load_config
 
     path = example_path(PATHS_EXAMPLE) if config is None else config
     return load_config(path, PathsConfig)
@@ -86,7 +88,7 @@ def _sample(config: PathsConfig, out: Path, seed_from: str) -> None:
     from fpsolve.cli.ensemble import print_paths_plan
     from fpsolve.cli.writing import check_result
     from fpsolve.errors import RunError, RunInterrupted
-    from fpsolve.paths import sample_paths
+    from fpsolve.paths.sampling import sample_paths
 
     problem = config.build()
     config = config.resolved(problem)

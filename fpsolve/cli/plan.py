@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from fpsolve.cli.config import Problem, RunConfig
+    from fpsolve.cli.config.run import Problem, RunConfig
 
 __all__ = ["print_plan", "suggestions", "units_text", "with_options"]
 

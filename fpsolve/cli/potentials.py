@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
-    from fpsolve.model.potentials import Potential
+    from fpsolve.model.potentials.potential import Potential
 
 __all__ = [
     "Exponent",
@@ -40,12 +40,10 @@ def make_potential(
     kind: str, sigma1: float, sigma2: float | None, slope: float, exponent: float
 ) -> Potential:
     """Return the potential of a kind with the parameters that belong to it."""
-    from fpsolve.model.potentials import (
-        FreePotential,
-        LinearPotential,
-        PowerPotential,
-        QuadraticPotential,
-    )
+    from fpsolve.model.potentials.free import FreePotential
+    from fpsolve.model.potentials.linear import LinearPotential
+    from fpsolve.model.potentials.power import PowerPotential
+    from fpsolve.model.potentials.quadratic import QuadraticPotential
 
     if kind == "quadratic":
         return QuadraticPotential(sigma1, sigma1 if sigma2 is None else sigma2)

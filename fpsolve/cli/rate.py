@@ -25,7 +25,7 @@ from fpsolve.cli.run import NoFigures, Out
 if TYPE_CHECKING:
     import xarray as xr
 
-    from fpsolve.model.potentials import Potential
+    from fpsolve.model.potentials.potential import Potential
 
 __all__ = ["case_bar", "rate", "save_figure"]
 
@@ -170,7 +170,7 @@ def _default_noises(quick: bool) -> list[float]:
 
 def _parts_for(potential: Potential, wanted: list[str] | None) -> list[str] | None:
     """The parts asked for, without the one that only quadratic potentials have."""
-    from fpsolve.model.potentials import QuadraticPotential
+    from fpsolve.model.potentials.quadratic import QuadraticPotential
 
     if wanted is None or isinstance(potential, QuadraticPotential):
         return wanted

@@ -42,7 +42,7 @@ def report(files: Files, out: Out = None, title: Title = None) -> None:
     is written unless every file can be read.
     """
     with reported_errors():
-        from fpsolve.pages import report as write_report
+        from fpsolve.pages.page import report as write_report
         from fpsolve.pages.page import report_text
 
         if out == _STANDARD_OUTPUT:

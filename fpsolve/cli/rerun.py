@@ -16,7 +16,7 @@ from fpsolve.cli.run import Threads
 if TYPE_CHECKING:
     import xarray as xr
 
-    from fpsolve.results.compare import Comparison
+    from fpsolve.results.compare.comparison import Comparison
 
 __all__ = ["rerun"]
 
@@ -94,7 +94,7 @@ def _announce(old: xr.Dataset, kind: str, status: str) -> None:
 
 def _repeat(file: Path, kind: str, options: dict[str, Any]) -> Any:
     from fpsolve.errors import RunInterrupted
-    from fpsolve.results.rerun import rerun as repeat
+    from fpsolve.results.rerun.repeating import rerun as repeat
 
     try:
         with _bar(kind) as progress:
@@ -137,7 +137,7 @@ def _compared(file: Path, target: Path) -> Comparison:
     from dataclasses import replace
 
     from fpsolve.cli.compare import print_comparison
-    from fpsolve.results.compare import compare
+    from fpsolve.results.compare.comparing import compare
 
     found = replace(compare(file, target), names=("the file", "the new result"))
     print_comparison(found)

@@ -60,8 +60,8 @@ def _resume_configured(
     directory: Path, manifest: Manifest, out: Path, no_figures: bool, keep: bool
 ) -> None:
     """Go on with what `fpsolve run` began."""
-    from fpsolve.cli.config import read_config
-    from fpsolve.density.checkpoints import Checkpoint
+    from fpsolve.cli.config.reading import read_config
+    from fpsolve.density.checkpoints.checkpoint import Checkpoint
     from fpsolve.density.checkpoints.start import read_start
 
     text = manifest.notes["configuration"]
@@ -97,7 +97,7 @@ def _write(solution: Solution, out: Path, name: str, figures: bool) -> None:
     ending = "" if solution.status == "finished" else f"-{solution.status}"
     typer.echo(solution.save(out / f"{name}{ending}.nc"))
     if figures:
-        from fpsolve.plotting import save_figures
+        from fpsolve.plotting.files import save_figures
 
         for figure in save_figures(solution, out, prefix=f"{name}-"):
             typer.echo(figure)

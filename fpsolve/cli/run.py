@@ -12,8 +12,8 @@ from fpsolve.cli.errors import reported_errors
 from fpsolve.cli.solving import solve_and_write
 
 if TYPE_CHECKING:
-    from fpsolve.cli.config import RunConfig
-    from fpsolve.density.checkpoints import Checkpoint
+    from fpsolve.cli.config.run import RunConfig
+    from fpsolve.density.checkpoints.checkpoint import Checkpoint
 
 __all__ = [
     "KeepCheckpoint",
@@ -88,7 +88,8 @@ def run(
 
 def read_config(config: Path | None, example: str | None) -> RunConfig:
     """Return what a file or a packaged example describes."""
-    from fpsolve.cli.config import EXAMPLES, example_path, load_config
+    from fpsolve.cli.config.examples import EXAMPLES, example_path
+    from fpsolve.cli.config.reading import load_config
 
     if config is not None and example is not None:
         raise ValueError(
@@ -132,7 +133,7 @@ def _solve(config: RunConfig, out: Path, every: str | None, keep: bool) -> None:
 
 
 def _checkpoint(config: RunConfig, out: Path, every: str) -> Checkpoint:
-    from fpsolve.density.checkpoints import Checkpoint
+    from fpsolve.density.checkpoints.checkpoint import Checkpoint
 
     folder = out / f"{config.output.name}.checkpoint"
     return Checkpoint(folder, every, {"configuration": config.to_toml()})

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 from fpsolve.cli.errors import FAILED, INTERRUPTED, fail, say
 
 if TYPE_CHECKING:
-    from fpsolve.cli.config import Problem, RunConfig
-    from fpsolve.density.checkpoints import Checkpoint
+    from fpsolve.cli.config.run import Problem, RunConfig
+    from fpsolve.density.checkpoints.checkpoint import Checkpoint
     from fpsolve.density.solution import Solution
 
 __all__ = ["keeping_partial_results", "say_where", "solve_and_write"]

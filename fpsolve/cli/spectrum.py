@@ -77,7 +77,7 @@ def spectrum(
         check_folder(out, "--out")
         from fpsolve._support.checks import check_positive
         from fpsolve.cli.writing import check_outputs
-        from fpsolve.model.curves import FixedBelt, MovingBelt
+        from fpsolve.model.curves.belts import FixedBelt, MovingBelt
         from fpsolve.model.laydown import LayDownModel
         from fpsolve.spectral.eigen.spectrum import spectrum as compute
         from fpsolve.studies.recipe import recipe

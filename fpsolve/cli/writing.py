@@ -11,7 +11,7 @@ import typer
 
 if TYPE_CHECKING:
     from fpsolve.density.solution import Solution
-    from fpsolve.paths import Paths
+    from fpsolve.paths.result import Paths
 
 __all__ = ["check_outputs", "check_result", "write_result"]
 
@@ -61,7 +61,7 @@ def write_result(
         draft.write_text(toml, encoding="utf-8")
     typer.echo(used)
     if figures:
-        from fpsolve.plotting import save_figures
+        from fpsolve.plotting.files import save_figures
 
         for figure in save_figures(result, out, prefix=f"{path.stem}-"):
             typer.echo(figure)

@@ -12,11 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fpsolve._support.digests import SAMPLED, digest_of, plain
-from fpsolve.density.schemes import DriftKick, SemiLagrangian
+from fpsolve.density.schemes.drift_kick import DriftKick
+from fpsolve.density.schemes.semi_lagrangian import SemiLagrangian
 from fpsolve.evolution.schedule import Schedule, make_schedule
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.model.curves.samples import digest_of_curve
-from fpsolve.model.identity import digest_or_none
+from fpsolve.model.identity.digests import digest_or_none
 from fpsolve.model.laydown import LayDownModel
 from fpsolve.model.potentials.samples import digest_of_potential
 

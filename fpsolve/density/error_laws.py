@@ -8,9 +8,9 @@ import numpy as np
 
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.model.laydown import LayDownModel
-from fpsolve.model.potentials import Potential
 from fpsolve.model.potentials.at_points import gradient_at, value_at
 from fpsolve.model.potentials.nodes import GibbsNodes, gibbs_nodes
+from fpsolve.model.potentials.potential import Potential
 
 __all__ = [
     "INTERPOLATION_COEFFICIENT", "KINK_COEFFICIENT", "angles_for", "feature_width",

@@ -15,8 +15,8 @@ from fpsolve.grids.circulation import Circulation, obeys_circulation_law, remain
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.grids.row_sums import SMALLEST, RowFunctionals, inverse_of
 from fpsolve.model.laydown import LayDownModel
-from fpsolve.model.potentials import Potential
 from fpsolve.model.potentials.at_points import value_at
+from fpsolve.model.potentials.potential import Potential
 
 Array = NDArray[np.float64]
 

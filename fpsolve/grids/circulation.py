@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.grids.row_sums import RowFunctionals
 from fpsolve.model.laydown import LayDownModel
-from fpsolve.model.potentials import Potential
 from fpsolve.model.potentials.at_points import value_at
+from fpsolve.model.potentials.potential import Potential
 
 __all__ = ["Circulation", "obeys_circulation_law", "remaining"]
 

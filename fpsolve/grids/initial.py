@@ -21,8 +21,8 @@ from fpsolve._support.checks import (
     shown,
 )
 from fpsolve.grids.phase_space import PhaseSpaceGrid, check_grid
-from fpsolve.model.potentials import Potential
 from fpsolve.model.potentials.at_points import value_at
+from fpsolve.model.potentials.potential import Potential
 
 __all__ = ["equilibrium", "from_function", "gaussian"]
 

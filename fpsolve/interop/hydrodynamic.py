@@ -16,7 +16,7 @@ from fpsolve.grids.plane import PlaneGrid
 from fpsolve.interop.fields import from_pde_field
 from fpsolve.interop.pypde import HydrodynamicPDE, expect_grid
 from fpsolve.interop.solvers import check_equation, checked_step, steps_between
-from fpsolve.reduced.hydrodynamic import HydrodynamicLimit
+from fpsolve.reduced.hydrodynamic.limit import HydrodynamicLimit
 from fpsolve.reduced.implicit import METHODS, Method
 
 __all__ = ["ScharfetterGummelSolver"]

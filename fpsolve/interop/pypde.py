@@ -18,7 +18,7 @@ from fpsolve.interop.differences import (
     plane_rate_bound,
 )
 from fpsolve.interop.fields import from_pde_field, own_grid
-from fpsolve.model.curves import Curve
+from fpsolve.model.curves.curve import Curve
 from fpsolve.model.laydown import LayDownModel
 
 __all__ = ["FokkerPlanckPDE", "HydrodynamicPDE", "expect_grid"]

@@ -12,9 +12,10 @@ from pde.solvers import SolverBase
 
 from fpsolve._support.checks import check_positive
 from fpsolve.density.recorder import Recorder
-from fpsolve.density.schemes import DriftKick, SemiLagrangian
+from fpsolve.density.schemes.drift_kick import DriftKick
 from fpsolve.density.schemes.form import State
 from fpsolve.density.schemes.scheme import Scheme, checked_start
+from fpsolve.density.schemes.semi_lagrangian import SemiLagrangian
 from fpsolve.density.tolerances import Tolerances, check_laws
 from fpsolve.errors import (
     DomainTooSmallError,

@@ -18,8 +18,14 @@ from fpsolve._support.checks import (
     construct,
     shown,
 )
-from fpsolve.model.curves import Curve, FixedBelt, curve_from_dict, curve_to_dict
-from fpsolve.model.potentials import Potential, potential_from_dict, potential_to_dict
+from fpsolve.model.curves.belts import FixedBelt
+from fpsolve.model.curves.curve import Curve
+from fpsolve.model.curves.dictionaries import curve_from_dict, curve_to_dict
+from fpsolve.model.potentials.dictionaries import (
+    potential_from_dict,
+    potential_to_dict,
+)
+from fpsolve.model.potentials.potential import Potential
 
 __all__ = ["LayDownModel", "check_model"]
 

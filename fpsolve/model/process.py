@@ -11,10 +11,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from fpsolve._support.arrays import check_numbers
 from fpsolve._support.checks import check_non_negative, check_positive
-from fpsolve.model.curves import Curve, FixedBelt, MovingBelt
-from fpsolve.model.curves.curve import check_speed
+from fpsolve.model.curves.belts import FixedBelt, MovingBelt
+from fpsolve.model.curves.curve import Curve, check_speed
 from fpsolve.model.laydown import LayDownModel
-from fpsolve.model.potentials import QuadraticPotential
+from fpsolve.model.potentials.quadratic import QuadraticPotential
 
 __all__ = ["Process"]
 

@@ -20,7 +20,7 @@ from fpsolve.pages.origin import provenance_part
 from fpsolve.pages.settings import curve_text, grid_text
 
 if TYPE_CHECKING:
-    from fpsolve.studies import CrossCheck
+    from fpsolve.studies.agreement.check import CrossCheck
 
 __all__ = ["HEADINGS", "section", "summary_row"]
 

@@ -13,7 +13,7 @@ from fpsolve.pages.studies import potential_of, versions_part
 if TYPE_CHECKING:
     import xarray as xr
 
-    from fpsolve.reduced.energy import EnergyProcess
+    from fpsolve.reduced.energy.process import EnergyProcess
 
 __all__ = ["COEFFICIENTS", "section"]
 
@@ -62,7 +62,7 @@ def section(dataset: xr.Dataset, source: str) -> Section:
 
 def _process(dataset: xr.Dataset) -> EnergyProcess | None:
     """Return the process the tables are of; None for a user's own potential."""
-    from fpsolve.reduced.energy import EnergyProcess
+    from fpsolve.reduced.energy.process import EnergyProcess
 
     potential = potential_of(dataset)
     if potential is None:

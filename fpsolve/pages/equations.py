@@ -6,7 +6,7 @@ import html
 from xml.etree import ElementTree
 
 from fpsolve.model.laydown import LayDownModel
-from fpsolve.model.potentials import Potential
+from fpsolve.model.potentials.potential import Potential
 from fpsolve.pages.blocks import Equation
 
 __all__ = [

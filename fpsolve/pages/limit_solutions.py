@@ -26,8 +26,8 @@ from fpsolve.pages.settings import curve_text, unread_model
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from fpsolve.reduced.energy import EnergySolution
-    from fpsolve.reduced.hydrodynamic import HydrodynamicSolution
+    from fpsolve.reduced.energy.solution import EnergySolution
+    from fpsolve.reduced.hydrodynamic.solution import HydrodynamicSolution
 
 __all__ = ["energy_section", "hydrodynamic_section"]
 

@@ -19,7 +19,7 @@ from fpsolve.pages.units import process_of, units_part
 
 if TYPE_CHECKING:
     from fpsolve.model.laydown import LayDownModel
-    from fpsolve.paths import Paths
+    from fpsolve.paths.result import Paths
 
 __all__ = ["MOMENTS", "moment_rows", "section"]
 

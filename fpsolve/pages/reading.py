@@ -124,7 +124,7 @@ def _section_of_study(result: Any) -> Section:
 
     if isinstance(result, xr.Dataset):
         return _section_of_dataset(result, "")
-    from fpsolve.reduced.energy import EnergyProcess
+    from fpsolve.reduced.energy.process import EnergyProcess
     from fpsolve.spectral.eigen.dataset import spectrum_dataset
     from fpsolve.spectral.eigen.spectrum import Spectrum
     from fpsolve.studies.agreement.check import CrossCheck

@@ -10,7 +10,7 @@ from fpsolve.pages.blocks import Block, Equation, Notice
 
 if TYPE_CHECKING:
     from fpsolve.grids.phase_space import PhaseSpaceGrid
-    from fpsolve.model.curves import Curve
+    from fpsolve.model.curves.curve import Curve
 
 __all__ = ["curve_text", "grid_text", "start_text", "unread_model", "with_options"]
 

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fpsolve._support.declared import declared
-from fpsolve.model.potentials import Potential, potential_from_dict
+from fpsolve.model.potentials.dictionaries import potential_from_dict
+from fpsolve.model.potentials.potential import Potential
 from fpsolve.pages.blocks import Block, Notice, Part, Table
 from fpsolve.pages.origin import provenance_part
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fpsolve._support.checks import shown
-from fpsolve.model.identity import digest_or_none
+from fpsolve.model.identity.digests import digest_or_none
 from fpsolve.paths.batch import Batch, run_batch
 from fpsolve.paths.ensemble import START_BLOCK, Ensemble, GivenStart, checked_sample
 from fpsolve.paths.laws import DensityLaw, EquilibriumLaw, GaussianLaw, PointLaw

@@ -9,13 +9,11 @@ from numpy.typing import NDArray
 
 from fpsolve._kernels import paths as kernels
 from fpsolve.model.curves.curve import Curve
-from fpsolve.model.potentials import (
-    FreePotential,
-    LinearPotential,
-    PowerPotential,
-    QuadraticPotential,
-)
+from fpsolve.model.potentials.free import FreePotential
+from fpsolve.model.potentials.linear import LinearPotential
 from fpsolve.model.potentials.potential import Potential
+from fpsolve.model.potentials.power import PowerPotential
+from fpsolve.model.potentials.quadratic import QuadraticPotential
 
 __all__ = ["compiled_potential", "half_step_shifts"]
 

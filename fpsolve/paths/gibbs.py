@@ -5,8 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve.model.potentials import LinearPotential, PowerPotential, QuadraticPotential
+from fpsolve.model.potentials.linear import LinearPotential
 from fpsolve.model.potentials.potential import Potential
+from fpsolve.model.potentials.power import PowerPotential
+from fpsolve.model.potentials.quadratic import QuadraticPotential
 from fpsolve.paths.patches import PatchRejection
 
 __all__ = ["GibbsSampler"]

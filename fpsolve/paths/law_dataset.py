@@ -12,7 +12,7 @@ from fpsolve._support.checks import construct
 from fpsolve._support.digests import SAMPLED, digest_of, plain
 from fpsolve._support.labels import labels
 from fpsolve.grids.phase_space import PhaseSpaceGrid
-from fpsolve.model.potentials import potential_from_dict
+from fpsolve.model.potentials.dictionaries import potential_from_dict
 from fpsolve.paths.ensemble import START_BLOCK, GivenStart
 from fpsolve.paths.laws import DensityLaw, EquilibriumLaw, GaussianLaw, PointLaw
 from fpsolve.paths.randomness import start_generator

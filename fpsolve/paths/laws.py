@@ -16,7 +16,8 @@ from fpsolve._support.checks import (
 )
 from fpsolve.grids.initial import checked_covariance
 from fpsolve.grids.phase_space import PhaseSpaceGrid, check_grid
-from fpsolve.model.potentials import Potential, potential_to_dict
+from fpsolve.model.potentials.dictionaries import potential_to_dict
+from fpsolve.model.potentials.potential import Potential
 from fpsolve.paths.gibbs import GibbsSampler
 from fpsolve.paths.interpolated import InterpolatedDensity
 

@@ -9,8 +9,7 @@ from numpy.typing import NDArray
 
 from fpsolve._support.checks import check_kind
 from fpsolve.plotting.style import COLOURS, PAGE, new_figure, paper_style
-from fpsolve.results.compare import Comparison
-from fpsolve.results.compare.comparison import verdict
+from fpsolve.results.compare.comparison import Comparison, verdict
 from fpsolve.results.compare.differences import FLOOR
 
 if TYPE_CHECKING:

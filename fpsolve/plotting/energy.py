@@ -20,7 +20,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from fpsolve.reduced.energy import EnergyProcess, EnergySolution
+    from fpsolve.reduced.energy.process import EnergyProcess
+    from fpsolve.reduced.energy.solution import EnergySolution
 
 __all__ = [
     "plot_energy_coefficients",

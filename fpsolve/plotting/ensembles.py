@@ -25,7 +25,9 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure, FigureBase
 
-    from fpsolve.paths import Histogram, Moments, Paths
+    from fpsolve.paths.histogram import Histogram
+    from fpsolve.paths.moments import Moments
+    from fpsolve.paths.result import Paths
 
 __all__ = ["plot_ensemble"]
 

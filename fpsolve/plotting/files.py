@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from fpsolve._support.checks import shown
 from fpsolve._support.files import atomic_path, made_folder
 from fpsolve.density.solution import Solution
-from fpsolve.paths import Paths
+from fpsolve.paths.result import Paths
 from fpsolve.plotting.angle import plot_angle
 from fpsolve.plotting.ensembles import plot_ensemble
 from fpsolve.plotting.entropy import has_entropy, plot_entropy

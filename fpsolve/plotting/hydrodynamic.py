@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from matplotlib.colors import Normalize
     from matplotlib.figure import Figure, SubFigure
 
-    from fpsolve.reduced.hydrodynamic import HydrodynamicSolution
+    from fpsolve.reduced.hydrodynamic.solution import HydrodynamicSolution
 
 __all__ = ["plot_hydrodynamic"]
 

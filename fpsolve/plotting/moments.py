@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from fpsolve.reduced.hydrodynamic import HydrodynamicSolution
+    from fpsolve.reduced.hydrodynamic.solution import HydrodynamicSolution
 
 __all__ = ["draw_moments", "plot_moments"]
 

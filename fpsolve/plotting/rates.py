@@ -234,7 +234,7 @@ def _draw_integral(axes: Axes, dataset: xr.Dataset, colour: str) -> None:
 def _theory(dataset: xr.Dataset) -> dict[str, np.ndarray]:
     """Bounds and asymptotes at many noises, where the potential can be made again."""
     from fpsolve._support.declared import declared
-    from fpsolve.model.potentials import potential_from_dict
+    from fpsolve.model.potentials.dictionaries import potential_from_dict
     from fpsolve.studies.rates.dataset import theory_curves
 
     noise = dataset["noise"].to_numpy()

@@ -10,10 +10,10 @@ import numpy as np
 from fpsolve._support.checks import check_kind, shown
 from fpsolve.density.solution import Solution
 from fpsolve.evolution.schedule import checked_stops
-from fpsolve.paths import Paths
+from fpsolve.paths.result import Paths
 
 if TYPE_CHECKING:
-    from fpsolve.reduced.hydrodynamic import HydrodynamicSolution
+    from fpsolve.reduced.hydrodynamic.solution import HydrodynamicSolution
 
 __all__ = [
     "check_dataset",
@@ -80,21 +80,21 @@ def check_datasets(datasets: Any) -> list[Any]:
 
 def check_process(process: Any) -> None:
     """Raise TypeError unless it is an energy process."""
-    from fpsolve.reduced.energy import EnergyProcess
+    from fpsolve.reduced.energy.process import EnergyProcess
 
     check_kind("process", process, EnergyProcess, "EnergyProcess(potential, noise)")
 
 
 def check_energy_solution(solution: Any) -> None:
     """Raise TypeError unless it is a law of the energy."""
-    from fpsolve.reduced.energy import EnergySolution
+    from fpsolve.reduced.energy.solution import EnergySolution
 
     check_kind("solution", solution, EnergySolution, "see EnergyProcess.solve")
 
 
 def check_hydrodynamic_solution(solution: Any) -> None:
     """Raise TypeError unless it is a solution of the hydrodynamic limit."""
-    from fpsolve.reduced.hydrodynamic import HydrodynamicSolution
+    from fpsolve.reduced.hydrodynamic.solution import HydrodynamicSolution
 
     check_kind(
         "solution", solution, HydrodynamicSolution, "see HydrodynamicLimit.solve"

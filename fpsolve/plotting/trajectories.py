@@ -23,9 +23,10 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from fpsolve.model.curves import Curve
-    from fpsolve.model.potentials import Potential
-    from fpsolve.paths import Paths, Trajectory
+    from fpsolve.model.curves.curve import Curve
+    from fpsolve.model.potentials.potential import Potential
+    from fpsolve.paths.result import Paths
+    from fpsolve.paths.trajectory import Trajectory
 
 __all__ = ["plot_fibre", "plot_nozzles", "plot_trajectories"]
 

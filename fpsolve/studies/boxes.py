@@ -15,10 +15,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fpsolve._support.checks import check_positive
-from fpsolve.model.curves import TabulatedCurve
+from fpsolve.model.curves.table import TabulatedCurve
 from fpsolve.model.laydown import LayDownModel
 from fpsolve.model.potentials.nodes import GibbsNodes
-from fpsolve.paths import EquilibriumLaw, sample_paths
+from fpsolve.paths.laws import EquilibriumLaw
+from fpsolve.paths.sampling import sample_paths
 
 __all__ = ["Travel", "box_for_travel", "rounded_up"]
 

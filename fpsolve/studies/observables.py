@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import cubature
 
-from fpsolve.model.potentials import Potential
+from fpsolve.model.potentials.potential import Potential
 
 __all__ = [
     "Circulation",

@@ -12,9 +12,13 @@ from fpsolve._support.declared import declared
 from fpsolve._support.labels import to_json
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.grids.plane import PlaneGrid
-from fpsolve.model.identity import digest_or_none
+from fpsolve.model.identity.digests import digest_or_none
 from fpsolve.model.laydown import LayDownModel
-from fpsolve.model.potentials import Potential, potential_from_dict, potential_to_dict
+from fpsolve.model.potentials.dictionaries import (
+    potential_from_dict,
+    potential_to_dict,
+)
+from fpsolve.model.potentials.potential import Potential
 from fpsolve.paths.law_dataset import FORMULAS, law_from_formula
 
 __all__ = ["RECIPE", "UserCodeError", "read_recipe", "recipe"]

@@ -29,7 +29,12 @@ def density_and_law(p0: Any, grid: PhaseSpaceGrid) -> tuple[NDArray[np.float64],
     ValueError, TypeError
         If the start has no density, none on this grid, or not the mass one.
     """
-    from fpsolve.paths import DensityLaw, EquilibriumLaw, GaussianLaw, PointLaw
+    from fpsolve.paths.laws import (
+        DensityLaw,
+        EquilibriumLaw,
+        GaussianLaw,
+        PointLaw,
+    )
 
     if type(p0) is PointLaw:
         raise ValueError(

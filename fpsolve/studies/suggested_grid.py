@@ -20,8 +20,8 @@ from fpsolve.density.error_laws import (
 from fpsolve.density.suggestions import check_tolerance
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.model.laydown import LayDownModel, check_model
-from fpsolve.model.potentials import Potential
 from fpsolve.model.potentials.nodes import GibbsNodes, gibbs_nodes
+from fpsolve.model.potentials.potential import Potential
 from fpsolve.studies.boxes import box_for_travel, rounded_up
 
 __all__ = ["SuggestedGrid", "box_half_widths", "suggest_grid"]

@@ -17,7 +17,7 @@ from fpsolve.cli.config.kinds import (
 )
 from fpsolve.cli.config.sections import Section
 from fpsolve.errors import ConfigurationError
-from fpsolve.model.curves import FixedBelt
+from fpsolve.model.curves.belts import FixedBelt
 from fpsolve.model.laydown import LayDownModel
 
 __all__ = ["Description", "named_section"]

@@ -14,21 +14,18 @@ from fpsolve.density.schemes import drift_kick, semi_lagrangian
 from fpsolve.evolution.schedule import make_schedule
 from fpsolve.grids import initial
 from fpsolve.grids.phase_space import PhaseSpaceGrid
-from fpsolve.model.curves import (
+from fpsolve.model.curves.belts import FixedBelt, MovingBelt
+from fpsolve.model.curves.nozzles import (
     EllipticNozzle,
-    FixedBelt,
-    MovingBelt,
     OscillatingNozzle,
     RotatingNozzle,
-    TabulatedCurve,
 )
+from fpsolve.model.curves.table import TabulatedCurve
 from fpsolve.model.laydown import LayDownModel
-from fpsolve.model.potentials import (
-    FreePotential,
-    LinearPotential,
-    PowerPotential,
-    QuadraticPotential,
-)
+from fpsolve.model.potentials.free import FreePotential
+from fpsolve.model.potentials.linear import LinearPotential
+from fpsolve.model.potentials.power import PowerPotential
+from fpsolve.model.potentials.quadratic import QuadraticPotential
 from fpsolve.model.process import Process
 
 __all__ = [

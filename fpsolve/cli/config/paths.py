@@ -12,7 +12,7 @@ from fpsolve.cli.config.description import Description, named_section
 from fpsolve.cli.config.kinds import GridSection, OutputSection, SpanSection
 from fpsolve.cli.config.sections import Section, one_of, section
 from fpsolve.model.laydown import LayDownModel
-from fpsolve.paths import EquilibriumLaw, GaussianLaw, PointLaw
+from fpsolve.paths.laws import EquilibriumLaw, GaussianLaw, PointLaw
 
 __all__ = ["PathsConfig", "PathsProblem", "PathsSection", "StartSection"]
 

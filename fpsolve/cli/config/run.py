@@ -20,7 +20,7 @@ from fpsolve.density.suggestions import SuggestedStep, suggest_step
 from fpsolve.grids.initial import gaussian
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.model.laydown import LayDownModel
-from fpsolve.paths import GaussianLaw
+from fpsolve.paths.laws import GaussianLaw
 from fpsolve.studies.suggested_grid import suggest_grid
 
 __all__ = ["Problem", "RunConfig"]

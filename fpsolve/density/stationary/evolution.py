@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fpsolve._kernels.threads import threads_worth_their_wait
-from fpsolve.density.schemes import DriftKick
+from fpsolve.density.schemes.drift_kick import DriftKick
 from fpsolve.density.schemes.form import State
 from fpsolve.density.schemes.scheme import Scheme
 

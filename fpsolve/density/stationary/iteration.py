@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve.density.schemes import DriftKick
+from fpsolve.density.schemes.drift_kick import DriftKick
 from fpsolve.density.stationary.acceleration import Acceleration
 from fpsolve.density.stationary.correction import Correction
 from fpsolve.density.stationary.evolution import Strides

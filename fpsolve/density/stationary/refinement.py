@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve.density.schemes import DriftKick
+from fpsolve.density.schemes.drift_kick import DriftKick
 from fpsolve.density.stationary.coarser import carried, coarser_grid
 from fpsolve.density.stationary.iteration import Stationary
 from fpsolve.density.stationary.start import start_on

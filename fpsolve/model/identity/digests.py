@@ -12,8 +12,9 @@ from typing import Any
 
 import numpy as np
 
-from fpsolve.model.curves import Curve, curve_to_dict
+from fpsolve.model.curves.curve import Curve
 from fpsolve.model.curves.dictionaries import KINDS as CURVES
+from fpsolve.model.curves.dictionaries import curve_to_dict
 from fpsolve.model.identity.code import (
     attribute_names,
     enclosed,
@@ -33,8 +34,9 @@ from fpsolve.model.identity.packages import (
     package_of_file,
     package_of_module,
 )
-from fpsolve.model.potentials import Potential, potential_to_dict
 from fpsolve.model.potentials.dictionaries import KINDS as POTENTIALS
+from fpsolve.model.potentials.dictionaries import potential_to_dict
+from fpsolve.model.potentials.potential import Potential
 
 __all__ = ["digest_or_none", "identity_digest"]
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from fpsolve._support.checks import check_call, check_integer, check_noise, check_real
-from fpsolve.model.potentials import Potential
+from fpsolve.model.potentials.potential import Potential
 from fpsolve.reduced.energy.averages import OrbitAverages
 from fpsolve.reduced.energy.checks import check_energies
 from fpsolve.reduced.energy.orbit import Orbit, orbit_of

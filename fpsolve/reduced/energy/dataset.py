@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from fpsolve._support.labels import labels, made_with, marked, origin, to_json
-from fpsolve.model.potentials import potential_to_dict
+from fpsolve.model.potentials.dictionaries import potential_to_dict
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -8,7 +8,7 @@ from fpsolve._support.declared import declared
 from fpsolve._support.labels import check_complete
 from fpsolve.evolution.layout import check_counts, check_dimensions, check_run
 from fpsolve.evolution.series import read_errors
-from fpsolve.model.potentials import potential_from_dict
+from fpsolve.model.potentials.dictionaries import potential_from_dict
 from fpsolve.reduced.energy.dataset import SERIES
 from fpsolve.reduced.energy.process import EnergyProcess
 from fpsolve.reduced.energy.solution import EnergySolution

@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve.model.potentials import Potential
+from fpsolve.model.potentials.potential import Potential
 
 __all__ = ["Well"]
 

@@ -11,14 +11,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from fpsolve.grids.plane import PlaneGrid
 from fpsolve.model.laydown import LayDownModel
-from fpsolve.model.potentials import (
-    LinearPotential,
-    Potential,
-    PowerPotential,
-    QuadraticPotential,
-)
 from fpsolve.model.potentials.at_points import value_at
+from fpsolve.model.potentials.linear import LinearPotential
 from fpsolve.model.potentials.partition import normalisation_of
+from fpsolve.model.potentials.potential import Potential
+from fpsolve.model.potentials.power import PowerPotential
+from fpsolve.model.potentials.quadratic import QuadraticPotential
 
 __all__ = ["EffectivePotential", "check_limit"]
 

@@ -13,7 +13,7 @@ from fpsolve._support.arrays import check_numbers
 from fpsolve._support.checks import check_integer, check_non_negative, check_pair
 from fpsolve.grids.initial import checked_covariance
 from fpsolve.model.laydown import LayDownModel
-from fpsolve.model.potentials import QuadraticPotential
+from fpsolve.model.potentials.quadratic import QuadraticPotential
 from fpsolve.reduced.hydrodynamic.effective_potential import check_limit
 
 __all__ = ["OrnsteinUhlenbeckLimit"]

@@ -11,8 +11,8 @@ from fpsolve._support.arrays import check_finite_numbers
 from fpsolve._support.checks import check_positive, shown
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.grids.plane import PlaneGrid
-from fpsolve.model.potentials import Potential
 from fpsolve.model.potentials.at_points import value_at
+from fpsolve.model.potentials.potential import Potential
 
 __all__ = ["balanced_gradient", "reconstruct"]
 

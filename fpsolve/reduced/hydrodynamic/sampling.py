@@ -18,7 +18,7 @@ from fpsolve.evolution.schedule import Schedule, make_schedule
 from fpsolve.evolution.schedule import checked_stops as checked_series
 from fpsolve.grids.plane import PlaneGrid
 from fpsolve.model.laydown import LayDownModel
-from fpsolve.model.potentials import QuadraticPotential
+from fpsolve.model.potentials.quadratic import QuadraticPotential
 from fpsolve.reduced.hydrodynamic.ornstein_uhlenbeck import OrnsteinUhlenbeckLimit
 
 __all__ = ["METHODS", "HydrodynamicPaths", "sample"]

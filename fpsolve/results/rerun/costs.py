@@ -17,7 +17,7 @@ from fpsolve.errors import NotRepeatableError
 if TYPE_CHECKING:
     import xarray as xr
 
-    from fpsolve.paths import Paths
+    from fpsolve.paths.result import Paths
 
 __all__ = ["check_paths", "check_run", "check_study"]
 

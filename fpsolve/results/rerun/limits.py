@@ -8,8 +8,8 @@ from fpsolve.results.rerun.costs import check_run
 from fpsolve.results.rerun.missing import own_code, unrecorded
 
 if TYPE_CHECKING:
-    from fpsolve.reduced.energy import EnergySolution
-    from fpsolve.reduced.hydrodynamic import HydrodynamicSolution
+    from fpsolve.reduced.energy.solution import EnergySolution
+    from fpsolve.reduced.hydrodynamic.solution import HydrodynamicSolution
 
 __all__ = ["repeat_energy", "repeat_hydrodynamic"]
 
@@ -18,7 +18,7 @@ def repeat_hydrodynamic(
     solution: HydrodynamicSolution, overrides: dict[str, Any]
 ) -> HydrodynamicSolution:
     """Call `HydrodynamicLimit.solve` as it was called, with the overrides."""
-    from fpsolve.reduced.hydrodynamic import HydrodynamicLimit
+    from fpsolve.reduced.hydrodynamic.limit import HydrodynamicLimit
 
     given, run = dict(overrides), solution.provenance.get("run")
     known = None if solution.limit is None else solution.limit.model

@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from fpsolve.paths import Paths, sample_paths
 from fpsolve.paths.ensemble import GivenStart
+from fpsolve.paths.result import Paths
+from fpsolve.paths.sampling import sample_paths
 from fpsolve.results.rerun.costs import check_paths
 from fpsolve.results.rerun.missing import own_code
 

@@ -98,7 +98,7 @@ def _function(name: str) -> Callable[..., Any]:
 def _energy_tables(
     potential: Any, noise: float, n_energies: int, n_eigenvalues: int
 ) -> xr.Dataset:
-    from fpsolve.reduced.energy import EnergyProcess
+    from fpsolve.reduced.energy.process import EnergyProcess
     from fpsolve.studies.energy_tables import tables_dataset
 
     return tables_dataset(EnergyProcess(potential, noise), n_energies, n_eigenvalues)

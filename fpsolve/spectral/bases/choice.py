@@ -7,7 +7,8 @@ import math
 import numpy as np
 
 from fpsolve.model.laydown import LayDownModel
-from fpsolve.model.potentials import Potential, QuadraticPotential
+from fpsolve.model.potentials.potential import Potential
+from fpsolve.model.potentials.quadratic import QuadraticPotential
 from fpsolve.spectral.bases.hermite import HermiteDiscretisation
 from fpsolve.spectral.bases.sectors import Discretisation
 from fpsolve.spectral.bases.tensor import TensorDiscretisation

@@ -7,7 +7,8 @@ import math
 import numpy as np
 from scipy.special import mathieu_a
 
-from fpsolve.model.potentials import LinearPotential, Potential
+from fpsolve.model.potentials.linear import LinearPotential
+from fpsolve.model.potentials.potential import Potential
 
 __all__ = ["asymptotic_slope", "essential_threshold"]
 

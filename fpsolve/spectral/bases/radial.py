@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 from scipy.sparse import csc_array
 
 from fpsolve.grids.phase_space import PhaseSpaceGrid
-from fpsolve.model.potentials import Potential, PowerPotential
+from fpsolve.model.potentials.potential import Potential
+from fpsolve.model.potentials.power import PowerPotential
 from fpsolve.spectral.bases.essential import asymptotic_slope, essential_threshold
 from fpsolve.spectral.bases.radial_basis import RadialBasis, radial_basis
 from fpsolve.spectral.bases.sectors import Sector, Truncation, Vector

@@ -9,8 +9,10 @@ import numpy as np
 from numpy.polynomial import Chebyshev
 from numpy.typing import ArrayLike, NDArray
 
-from fpsolve.model.potentials import Potential, PowerPotential, QuadraticPotential
 from fpsolve.model.potentials.dictionaries import KINDS
+from fpsolve.model.potentials.potential import Potential
+from fpsolve.model.potentials.power import PowerPotential
+from fpsolve.model.potentials.quadratic import QuadraticPotential
 from fpsolve.model.potentials.samples import digest_of_profile
 from fpsolve.spectral.bases.essential import asymptotic_slope
 from fpsolve.spectral.bases.orthogonal import (

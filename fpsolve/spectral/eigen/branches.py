@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from fpsolve.model.laydown import LayDownModel
-from fpsolve.model.potentials import Potential
+from fpsolve.model.potentials.potential import Potential
 from fpsolve.spectral.bases.choice import discretisation_for
 from fpsolve.spectral.bases.sectors import Discretisation, Sector, Truncation
 from fpsolve.spectral.eigen.eigenvalues import ShiftedInverse

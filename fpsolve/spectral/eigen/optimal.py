@@ -13,7 +13,7 @@ from scipy.optimize import brentq
 from fpsolve._support.blas import one_blas_thread
 from fpsolve.errors import ToleranceError
 from fpsolve.model.laydown import LayDownModel
-from fpsolve.model.potentials import Potential
+from fpsolve.model.potentials.potential import Potential
 from fpsolve.spectral.bases.choice import discretisation_for, orbit_radius
 from fpsolve.spectral.bases.sectors import Sector
 from fpsolve.spectral.eigen.branches import Branch, PairBranch

@@ -15,7 +15,7 @@ from fpsolve._support.blas import one_blas_thread
 from fpsolve._support.checks import check_integer, check_real, shown
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.model.laydown import LayDownModel
-from fpsolve.model.potentials import QuadraticPotential
+from fpsolve.model.potentials.quadratic import QuadraticPotential
 from fpsolve.spectral.bases.choice import check_resolved, discretisation_for
 from fpsolve.spectral.bases.sectors import Discretisation, Sector, Truncation
 from fpsolve.spectral.eigen.refinement import Refinement, left_vector, with_residual

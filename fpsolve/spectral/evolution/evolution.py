@@ -17,7 +17,7 @@ from fpsolve.errors import MemoryLimitError, ToleranceError
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.grids.row_sums import MOMENTS
 from fpsolve.model.laydown import LayDownModel
-from fpsolve.model.potentials import QuadraticPotential
+from fpsolve.model.potentials.quadratic import QuadraticPotential
 from fpsolve.spectral.evolution import quadrature
 from fpsolve.spectral.evolution.expansion import Expansion, spread
 from fpsolve.spectral.evolution.exponential import ForwardOperator

@@ -11,7 +11,7 @@ from scipy.special import ive
 
 from fpsolve.grids.initial import checked_covariance
 from fpsolve.grids.phase_space import PhaseSpaceGrid
-from fpsolve.model.potentials import QuadraticPotential
+from fpsolve.model.potentials.quadratic import QuadraticPotential
 from fpsolve.spectral.evolution.expansion import Expansion
 
 __all__ = ["DensityStart", "GaussianStart", "hermite_functions"]

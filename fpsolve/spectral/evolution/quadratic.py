@@ -6,7 +6,7 @@ from typing import Any
 
 from fpsolve._support.checks import check_positive, shown
 from fpsolve.model.laydown import LayDownModel
-from fpsolve.model.potentials import QuadraticPotential
+from fpsolve.model.potentials.quadratic import QuadraticPotential
 
 __all__ = ["check_model", "checked_tolerance", "quadratic"]
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.grids.row_sums import MOMENTS
-from fpsolve.model.potentials import QuadraticPotential
+from fpsolve.model.potentials.quadratic import QuadraticPotential
 from fpsolve.spectral.evolution.expansion import Expansion
 from fpsolve.spectral.evolution.projection import hermite_functions
 

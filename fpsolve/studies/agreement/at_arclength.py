@@ -30,7 +30,7 @@ from fpsolve.studies.agreement.reference import MOMENTS, reference_at
 from fpsolve.studies.agreement.steps import step_bias
 
 if TYPE_CHECKING:
-    from fpsolve.paths import Paths
+    from fpsolve.paths.result import Paths
 
 __all__ = ["TESTS_PER_STATION", "Station"]
 

@@ -23,7 +23,7 @@ from fpsolve.studies.agreement.partition import equal_probability_boxes
 from fpsolve.studies.starts import density_and_law
 
 if TYPE_CHECKING:
-    from fpsolve.paths import DensityLaw
+    from fpsolve.paths.laws import DensityLaw
 
 __all__ = [
     "GridError",
@@ -177,7 +177,7 @@ def coarser_runs(
 
 def _start(law: Any, grid: PhaseSpaceGrid) -> Array:
     """The density that a law has on a grid, of mass 1."""
-    from fpsolve.paths import DensityLaw
+    from fpsolve.paths.laws import DensityLaw
 
     if isinstance(law, DensityLaw):
         density = law.density(grid)

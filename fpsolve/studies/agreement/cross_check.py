@@ -37,7 +37,8 @@ from fpsolve.studies.recipe import recipe
 from fpsolve.studies.starts import density_and_law
 
 if TYPE_CHECKING:
-    from fpsolve.paths import DensityLaw, Paths
+    from fpsolve.paths.laws import DensityLaw
+    from fpsolve.paths.result import Paths
 
 __all__ = ["compare", "cross_check"]
 
@@ -136,7 +137,8 @@ def cross_check(
     ----------
     [KMW09]_, equations (6) and (7).
     """
-    from fpsolve.paths import DensityLaw, sample_paths
+    from fpsolve.paths.laws import DensityLaw
+    from fpsolve.paths.sampling import sample_paths
 
     s = _checked_places(s)
     n_paths = check_integer("n_paths", n_paths, at_least=FEWEST_PATHS)
@@ -217,7 +219,7 @@ def compare(
         If both have no s in common, or there are too few paths.
     """
     _check_options(false_alarm, cells)
-    from fpsolve.paths import Paths
+    from fpsolve.paths.result import Paths
 
     check_kind("paths", paths, Paths, "it is what `sample_paths` returns")
     check_integer("n_paths", paths.n_paths, at_least=FEWEST_PATHS)

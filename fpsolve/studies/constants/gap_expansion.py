@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 
-from fpsolve.model.potentials import LinearPotential, Potential, QuadraticPotential
+from fpsolve.model.potentials.linear import LinearPotential
+from fpsolve.model.potentials.potential import Potential
+from fpsolve.model.potentials.quadratic import QuadraticPotential
 
 __all__ = ["next_gap_term"]
 

@@ -8,7 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import eigh_tridiagonal
 
-from fpsolve.model.potentials import LinearPotential, Potential, QuadraticPotential
+from fpsolve.model.potentials.linear import LinearPotential
+from fpsolve.model.potentials.potential import Potential
+from fpsolve.model.potentials.quadratic import QuadraticPotential
 
 __all__ = ["poincare_constant"]
 

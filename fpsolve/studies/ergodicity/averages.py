@@ -21,8 +21,10 @@ from fpsolve._support.checks import (
 from fpsolve._support.labels import made_with
 from fpsolve._support.progress import ProgressCallback, reporting
 from fpsolve.model.laydown import LayDownModel
-from fpsolve.model.potentials import Potential, potential_to_dict
-from fpsolve.paths import EquilibriumLaw, sample_paths
+from fpsolve.model.potentials.dictionaries import potential_to_dict
+from fpsolve.model.potentials.potential import Potential
+from fpsolve.paths.laws import EquilibriumLaw
+from fpsolve.paths.sampling import sample_paths
 from fpsolve.studies.arguments import check_functions, series_of
 from fpsolve.studies.ergodicity.asymptotic_variance import SETTLED
 from fpsolve.studies.ergodicity.dataset import averages_dataset

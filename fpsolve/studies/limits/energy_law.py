@@ -9,8 +9,9 @@ from numpy.typing import NDArray
 from scipy import stats
 
 from fpsolve.grids.phase_space import PhaseSpaceGrid
-from fpsolve.paths import GaussianLaw
-from fpsolve.reduced.energy import EnergyGrid, EnergyProcess
+from fpsolve.paths.laws import GaussianLaw
+from fpsolve.reduced.energy.grid import EnergyGrid
+from fpsolve.reduced.energy.process import EnergyProcess
 
 __all__ = ["N_FUNCTIONS", "SmoothedLaw", "density_of", "energy_masses"]
 

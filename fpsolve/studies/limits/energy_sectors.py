@@ -13,8 +13,9 @@ from fpsolve._support.checks import check_noise
 from fpsolve._support.labels import labels, made_with, to_json
 from fpsolve.errors import MemoryLimitError, ToleranceError
 from fpsolve.model.laydown import LayDownModel
-from fpsolve.model.potentials import Potential, potential_to_dict
-from fpsolve.reduced.energy import EnergyProcess
+from fpsolve.model.potentials.dictionaries import potential_to_dict
+from fpsolve.model.potentials.potential import Potential
+from fpsolve.reduced.energy.process import EnergyProcess
 from fpsolve.spectral.bases.choice import discretisation_for
 from fpsolve.spectral.bases.sectors import Sector
 from fpsolve.spectral.eigen.spectrum import spectrum

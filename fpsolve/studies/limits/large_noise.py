@@ -14,8 +14,9 @@ from fpsolve._support.checks import check_finite, check_noise, check_positive
 from fpsolve._support.labels import to_json
 from fpsolve.errors import RunInterrupted
 from fpsolve.model.laydown import LayDownModel
-from fpsolve.model.potentials import Potential, QuadraticPotential
-from fpsolve.paths import GaussianLaw
+from fpsolve.model.potentials.potential import Potential
+from fpsolve.model.potentials.quadratic import QuadraticPotential
+from fpsolve.paths.laws import GaussianLaw
 from fpsolve.reduced.hydrodynamic.effective_potential import (
     EffectivePotential,
     slope_of,

@@ -16,12 +16,14 @@ from fpsolve.density.solve import solve
 from fpsolve.density.steady_state import steady_state
 from fpsolve.grids import diagnostics, initial
 from fpsolve.grids.phase_space import PhaseSpaceGrid
-from fpsolve.model.curves import Curve, FixedBelt, MovingBelt
+from fpsolve.model.curves.belts import FixedBelt, MovingBelt
+from fpsolve.model.curves.curve import Curve
 from fpsolve.model.laydown import LayDownModel
-from fpsolve.model.potentials import Potential, QuadraticPotential
 from fpsolve.model.potentials.nodes import gibbs_nodes
-from fpsolve.paths import GaussianLaw
-from fpsolve.reduced.hydrodynamic import HydrodynamicLimit
+from fpsolve.model.potentials.potential import Potential
+from fpsolve.model.potentials.quadratic import QuadraticPotential
+from fpsolve.paths.laws import GaussianLaw
+from fpsolve.reduced.hydrodynamic.limit import HydrodynamicLimit
 from fpsolve.spectral.eigen.gap import spectral_gap
 from fpsolve.spectral.evolution.steady import spectral_steady_state
 from fpsolve.studies.constants.gap_expansion import next_gap_term

@@ -10,7 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fpsolve._support.labels import labels, made_with, to_json
-from fpsolve.model.potentials import Potential, QuadraticPotential, potential_to_dict
+from fpsolve.model.potentials.dictionaries import potential_to_dict
+from fpsolve.model.potentials.potential import Potential
+from fpsolve.model.potentials.quadratic import QuadraticPotential
 from fpsolve.studies.limits.orders import fitted_order, observed_orders
 from fpsolve.studies.limits.quantities import Quantity, quantities_of
 from fpsolve.studies.sweeps.sweep import Case

@@ -13,9 +13,12 @@ from scipy.special import i0e, i1e
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.grids.plane import PlaneGrid
 from fpsolve.model.laydown import LayDownModel
-from fpsolve.model.potentials import QuadraticPotential
-from fpsolve.paths import GaussianLaw
-from fpsolve.reduced.hydrodynamic import HydrodynamicLimit, OrnsteinUhlenbeckLimit
+from fpsolve.model.potentials.quadratic import QuadraticPotential
+from fpsolve.paths.laws import GaussianLaw
+from fpsolve.reduced.hydrodynamic.limit import HydrodynamicLimit
+from fpsolve.reduced.hydrodynamic.ornstein_uhlenbeck import (
+    OrnsteinUhlenbeckLimit,
+)
 
 __all__ = ["Approximation", "stationary_limit", "transient_limit"]
 

@@ -16,9 +16,9 @@ from fpsolve._support.checks import (
     check_positive,
 )
 from fpsolve.errors import RunInterrupted
-from fpsolve.model.potentials import Potential
-from fpsolve.paths import GaussianLaw
-from fpsolve.reduced.energy import EnergyProcess
+from fpsolve.model.potentials.potential import Potential
+from fpsolve.paths.laws import GaussianLaw
+from fpsolve.reduced.energy.process import EnergyProcess
 from fpsolve.studies.arguments import series_of
 from fpsolve.studies.limits.small_noise_case import small_noise_case
 from fpsolve.studies.limits.small_noise_dataset import small_noise_dataset

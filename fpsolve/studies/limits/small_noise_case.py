@@ -12,11 +12,12 @@ from fpsolve.density.schemes import drift_kick
 from fpsolve.density.solve import solve
 from fpsolve.grids import initial
 from fpsolve.grids.phase_space import PhaseSpaceGrid
-from fpsolve.model.curves import FixedBelt, MovingBelt
+from fpsolve.model.curves.belts import FixedBelt, MovingBelt
 from fpsolve.model.laydown import LayDownModel
-from fpsolve.model.potentials import Potential
-from fpsolve.paths import GaussianLaw, sample_paths
-from fpsolve.reduced.energy import EnergyProcess
+from fpsolve.model.potentials.potential import Potential
+from fpsolve.paths.laws import GaussianLaw
+from fpsolve.paths.sampling import sample_paths
+from fpsolve.reduced.energy.process import EnergyProcess
 from fpsolve.studies.limits.energy_law import SmoothedLaw, energy_masses
 
 __all__ = ["half_width_for", "small_noise_case"]

@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fpsolve._support.labels import labels, made_with, to_json
-from fpsolve.model.potentials import Potential, potential_to_dict
+from fpsolve.model.potentials.dictionaries import potential_to_dict
+from fpsolve.model.potentials.potential import Potential
 from fpsolve.studies.limits.energy_law import N_FUNCTIONS
 from fpsolve.studies.limits.orders import observed_orders
 from fpsolve.studies.sweeps.sweep import Case

@@ -12,7 +12,9 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import brentq, minimize
 
 from fpsolve._support.checks import check_noise
-from fpsolve.model.potentials import LinearPotential, Potential, QuadraticPotential
+from fpsolve.model.potentials.linear import LinearPotential
+from fpsolve.model.potentials.potential import Potential
+from fpsolve.model.potentials.quadratic import QuadraticPotential
 from fpsolve.studies.constants.gap_expansion import next_gap_term
 from fpsolve.studies.constants.poincare import poincare_constant, require_confining
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from fpsolve.errors import MemoryLimitError, ToleranceError
 from fpsolve.model.laydown import LayDownModel
-from fpsolve.model.potentials import Potential
+from fpsolve.model.potentials.potential import Potential
 from fpsolve.spectral.bases.essential import asymptotic_slope
 from fpsolve.spectral.bases.sectors import Sector
 from fpsolve.spectral.eigen.gap import spectral_gap

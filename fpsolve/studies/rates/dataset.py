@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from scipy.optimize import nnls
 
 from fpsolve._support.labels import labels, made_with, to_json
-from fpsolve.model.potentials import Potential, potential_to_dict
+from fpsolve.model.potentials.dictionaries import potential_to_dict
+from fpsolve.model.potentials.potential import Potential
 from fpsolve.studies.rates.bounds import (
     averaging_bound,
     hypocoercive_bound,

@@ -14,7 +14,7 @@ from scipy.sparse.linalg import splu
 
 from fpsolve._support.blas import one_blas_thread
 from fpsolve.model.laydown import LayDownModel, check_model
-from fpsolve.model.potentials import QuadraticPotential
+from fpsolve.model.potentials.quadratic import QuadraticPotential
 from fpsolve.spectral.bases.radial import RadialDiscretisation
 from fpsolve.spectral.bases.radial_basis import radial_basis
 from fpsolve.spectral.bases.sectors import Sector, Truncation

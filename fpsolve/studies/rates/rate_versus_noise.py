@@ -13,8 +13,9 @@ from numpy.typing import NDArray
 from fpsolve._support.checks import check_flag, check_positive
 from fpsolve.errors import RunInterrupted
 from fpsolve.model.laydown import LayDownModel
-from fpsolve.model.potentials import Potential, QuadraticPotential
-from fpsolve.paths import GaussianLaw
+from fpsolve.model.potentials.potential import Potential
+from fpsolve.model.potentials.quadratic import QuadraticPotential
+from fpsolve.paths.laws import GaussianLaw
 from fpsolve.spectral.eigen.spectrum import check_tolerance
 from fpsolve.studies.arguments import check_functions, names_of, series_of
 from fpsolve.studies.constants.poincare import poincare_constant, require_confining

@@ -17,7 +17,7 @@ from fpsolve.density.suggestions import suggest_step
 from fpsolve.evolution.decay import DecayRate, fit_decay
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.model.laydown import LayDownModel
-from fpsolve.model.potentials import Potential
+from fpsolve.model.potentials.potential import Potential
 from fpsolve.studies.constants.poincare import poincare_constant
 from fpsolve.studies.rates.modes import SlowestMode, relative_norm, slowest_modes
 from fpsolve.studies.starts import density_and_law

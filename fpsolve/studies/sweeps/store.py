@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 from fpsolve._support.checks import shown
 from fpsolve._support.files import atomic_path
 from fpsolve._support.provenance import versions
-from fpsolve.model.identity import UnidentifiedError, identity_digest
+from fpsolve.model.identity.digests import identity_digest
+from fpsolve.model.identity.objects import UnidentifiedError
 
 __all__ = ["CaseStore"]
 

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from fpsolve._support.blas import one_blas_thread
 from fpsolve._support.checks import check_call, check_kind, shown
 from fpsolve.errors import RunInterrupted
-from fpsolve.model.identity import digest_or_none
+from fpsolve.model.identity.digests import digest_or_none
 from fpsolve.studies.sweeps.executors import executor_for, finished_tasks
 from fpsolve.studies.sweeps.recorded_warnings import recorded_warnings
 from fpsolve.studies.sweeps.store import CaseStore
