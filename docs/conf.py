@@ -13,6 +13,7 @@ version = release
 
 # Modules of this folder that the configuration names.
 sys.path.insert(0, str(Path(__file__).parent))
+import house_map  # noqa: E402
 
 extensions = [
     "myst_parser",
@@ -77,5 +78,7 @@ def escape_bars(app, what, name, obj, options, lines):
 
 
 def setup(app):
+    # Before the pages are read, which show it.
+    app.connect("builder-inited", house_map.draw)
     # After napoleon, whose priority is 500.
     app.connect("autodoc-process-docstring", escape_bars, priority=800)

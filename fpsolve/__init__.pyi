@@ -38,6 +38,7 @@ from .grids.phase_space import PhaseSpaceGrid as PhaseSpaceGrid
 from .grids.plane import PlaneGrid as PlaneGrid
 from .interop import from_pde_field as from_pde_field
 from .interop import to_pde_field as to_pde_field
+from .model.curves import Curve as Curve
 from .model.curves import EllipticNozzle as EllipticNozzle
 from .model.curves import FixedBelt as FixedBelt
 from .model.curves import MovingBelt as MovingBelt
@@ -49,6 +50,7 @@ from .model.potentials import CallablePotential as CallablePotential
 from .model.potentials import FreePotential as FreePotential
 from .model.potentials import IsotropicPotential as IsotropicPotential
 from .model.potentials import LinearPotential as LinearPotential
+from .model.potentials import Potential as Potential
 from .model.potentials import PowerPotential as PowerPotential
 from .model.potentials import QuadraticPotential as QuadraticPotential
 from .model.process import Process as Process

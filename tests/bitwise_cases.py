@@ -12,7 +12,7 @@ import warnings
 import numpy as np
 
 import fpsolve as fp
-from fpsolve import _threads
+from fpsolve._kernels import threads
 from fpsolve.density.schemes.rotation import RotationDiffusion
 
 GRID = fp.PhaseSpaceGrid(5.0, (20, 16, 16))
@@ -185,7 +185,7 @@ def digest_of(name):
 
 if __name__ == "__main__":
     # Runs on grids as small as these would be left to one thread.
-    _threads.CELLS_PER_THREAD = 1
+    threads.CELLS_PER_THREAD = 1
     warnings.simplefilter("ignore")
     names = sys.argv[1:] or CASES
     json.dump({name: digest_of(name) for name in names}, sys.stdout)

@@ -14,7 +14,6 @@ from fpsolve.grids.initial import gaussian
 from fpsolve.pages.page import html_page
 from fpsolve.pages.reading import section_of
 from fpsolve.paths import GaussianLaw
-from fpsolve.results import save
 from fpsolve.spectral.eigen.dataset import spectrum_dataset
 from fpsolve.studies import compare
 from fpsolve.studies.energy_tables import tables_dataset
@@ -158,7 +157,7 @@ def result_file(name):
     """The file of that name, written as its command does; the same for all tests."""
     result, path = KINDS[name][0](), folder() / name
     if isinstance(result, (fp.Solution, fp.Paths)):
-        return save(result, path)
+        return result.save(path)
     if not hasattr(result, "to_netcdf"):
         result = result.to_xarray()
     result.to_netcdf(path, engine="h5netcdf")

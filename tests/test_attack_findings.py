@@ -14,11 +14,13 @@ from solutions import relaxing_solution
 from typer.testing import CliRunner
 
 import fpsolve as fp
-from fpsolve import diagnostics, initial, plotting, studies, suggestions
+from fpsolve import diagnostics, initial, plotting, studies
 from fpsolve.cli import app
+from fpsolve.density import error_laws
 from fpsolve.density.recorder import Recorder
 from fpsolve.density.stationary.start import concentration_of
 from fpsolve.model.curves import FixedBelt, MovingBelt, RotatingNozzle
+from fpsolve.studies import suggested_grid
 from fpsolve.studies.rates.bounds import averaging_bound, hypocoercive_bound
 
 GRID = fp.PhaseSpaceGrid(5.0, (9, 8, 8))
@@ -185,7 +187,7 @@ def test_the_suggested_grid_has_no_unit_of_length(potential, noise, curve, sigma
 
 def test_the_law_of_the_suggested_step_has_no_unit_of_length():
     """C ds² is a number: κ, 1 and A² have three different units."""
-    law, force = suggestions.splitting_coefficient, 0.7
+    law, force = error_laws.splitting_coefficient, 0.7
     for sigma in (1 / 64, 64.0):
         model = fp.LayDownModel(fp.QuadraticPotential(), 1.5 / sigma**0.5)
         scaled = law(model, force / sigma**2, sigma) * sigma**2
@@ -251,7 +253,7 @@ def test_angles_balance_every_belt(speed):
     assert i1e(k) / i0e(k) == pytest.approx(speed, rel=1e-12)
     model = fp.LayDownModel(fp.QuadraticPotential(), 1e-9, MovingBelt(speed))
     # |∂₁B| = ξ1 = A²k/2, unless that is beyond the pattern.
-    shift = suggestions.belt_shift(model)
+    shift = suggested_grid.belt_shift(model)
     assert shift in (pytest.approx(0.5e-18 * k, rel=1e-6, abs=1e-12), 0.0)
 
 

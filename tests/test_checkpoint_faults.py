@@ -364,7 +364,7 @@ def test_a_curve_of_user_code_is_compared_by_where_it_is(tmp_path):
 
 
 def test_a_class_of_the_user_is_not_resumed_as_the_one_whose_kind_it_has(tmp_path):
-    class Stiff(fp.potentials.Potential):
+    class Stiff(fp.Potential):
         kind = "quadratic"
         formula = latex = "B"
 

@@ -11,7 +11,7 @@ import pytest
 from command_line import HANGS, assert_mistake, command_waiting_at, files
 from solutions import relaxing_solution
 
-from fpsolve import io
+import fpsolve as fp
 from fpsolve.cli.config import load_config
 
 ROOT = Path(__file__).parents[1]
@@ -65,7 +65,7 @@ def test_a_run_writes_result_configuration_and_figures(fpsolve, config, tmp_path
     figures = ["angle", "entropy", "marginals", "moments", "overview"]
     names = [*(f"small-{name}.png" for name in figures), "small.nc", "small.toml"]
     assert files(tmp_path / "out") == sorted(names)
-    solution = io.load(tmp_path / "out" / "small.nc")
+    solution = fp.load(tmp_path / "out" / "small.nc")
     assert solution.status == "finished"
     assert solution.errors is not None
     np.testing.assert_array_equal(solution.saved_s, [0.5, 1.0])
@@ -90,7 +90,7 @@ def test_the_run_can_be_repeated_from_what_it_wrote(fpsolve, config, tmp_path):
     written = tmp_path / "first" / "small.toml"
     fpsolve("run", written, "--out", "second")
     first, second = (
-        io.load(tmp_path / folder / "small.nc") for folder in ("first", "second")
+        fp.load(tmp_path / folder / "small.nc") for folder in ("first", "second")
     )
     np.testing.assert_array_equal(first.densities, second.densities)
     assert first.provenance["configuration"] == written.read_text()
@@ -105,7 +105,7 @@ def test_what_is_suggested_is_said_and_written(fpsolve, config, tmp_path):
     assert result.exit_code == 0, result.output
     assert "suggested: the splitting error is at most" in result.stdout
     assert load_config(tmp_path / "out" / "small.toml").run.ds is not None
-    reasons = io.load(tmp_path / "out" / "small.nc").provenance["suggested"]
+    reasons = fp.load(tmp_path / "out" / "small.nc").provenance["suggested"]
     assert list(reasons) == ["ds"]
     assert reasons["ds"].startswith("the splitting error is at most")
 
@@ -132,7 +132,7 @@ def test_results_can_be_stored_as_zarr(fpsolve, config, tmp_path):
     config.write_text(CONFIG + 'format = "zarr"\n')
     result = fpsolve("run", config, "--out", "out", "--no-figures")
     assert result.exit_code == 0, result.output
-    assert io.load(tmp_path / "out" / "small.zarr").status == "finished"
+    assert fp.load(tmp_path / "out" / "small.zarr").status == "finished"
 
 
 def test_a_misspelt_key_is_answered_with_the_nearest(fpsolve, config, tmp_path):
@@ -184,7 +184,7 @@ def test_a_run_that_fails_keeps_what_it_recorded(fpsolve, config, tmp_path):
     assert_mistake(result, "error: boundary mass", code=1)
     assert "enlarge `half_width`" in result.stderr
     assert files(tmp_path / "out") == ["small-failed.nc", "small-failed.toml"]
-    partial = io.load(tmp_path / "out" / "small-failed.nc")
+    partial = fp.load(tmp_path / "out" / "small-failed.nc")
     assert partial.status == "failed"
     assert partial.message in result.stderr
 
@@ -220,7 +220,7 @@ def test_an_interrupted_run_keeps_what_it_recorded(
     monkeypatch.setattr("fpsolve.cli.progress.progress_bar", interrupting(at=0.75))
     result = fpsolve("run", config, "--out", "out")
     assert_mistake(result, "interrupted; what was recorded until then is kept", 130)
-    partial = io.load(tmp_path / "out" / "small-interrupted.nc")
+    partial = fp.load(tmp_path / "out" / "small-interrupted.nc")
     assert partial.status == "interrupted"
     assert partial.s[-1] == 0.75
     np.testing.assert_array_equal(partial.saved_s, [0.5])
@@ -251,7 +251,7 @@ def test_a_full_disk_is_an_error_without_a_traceback(
 
 def test_a_stored_result_is_drawn_beside_itself_or_elsewhere(fpsolve, tmp_path):
     (tmp_path / "out").mkdir()
-    path = io.save(relaxing_solution(), tmp_path / "out" / "run.nc")
+    path = relaxing_solution().save(tmp_path / "out" / "run.nc")
     result = fpsolve("plot", path)
     assert result.exit_code == 0, result.output
     assert len(result.stdout.split()) == 5
@@ -268,7 +268,7 @@ def test_a_file_that_cannot_be_drawn_is_named(fpsolve, config, tmp_path):
 
 
 def test_a_movie_of_one_frame_is_refused(fpsolve, tmp_path):
-    path = io.save(relaxing_solution(saved=(5.0,)), tmp_path / "run.nc")
+    path = relaxing_solution(saved=(5.0,)).save(tmp_path / "run.nc")
     result = fpsolve("plot", path, "--movie")
     assert_mistake(result, "must hold at least two saved densities for a movie")
 
@@ -336,6 +336,6 @@ def test_a_signal_stops_a_run_and_keeps_it(config, tmp_path):
     assert process.returncode == 130, stderr
     assert "interrupted" in stderr
     assert "Traceback" not in stderr
-    partial = io.load(tmp_path / "out" / "small-interrupted.nc")
+    partial = fp.load(tmp_path / "out" / "small-interrupted.nc")
     assert partial.status == "interrupted"
     assert partial.s[-1] == 0.375

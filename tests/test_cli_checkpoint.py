@@ -9,7 +9,7 @@ import pytest
 from checkpoint_runs import Killed, assert_same_bits, left_at
 from command_line import HANGS, assert_mistake, command_waiting_at, files
 
-from fpsolve import io
+import fpsolve as fp
 from fpsolve.density.checkpoints import snapshots
 from fpsolve.density.checkpoints.status import status_of
 
@@ -59,7 +59,7 @@ def config(tmp_path):
 def whole(fpsolve, config, tmp_path):
     """The result of a run without checkpoints."""
     assert fpsolve("run", config, "--out", "whole", "--no-figures").exit_code == 0
-    return io.load(tmp_path / "whole" / "small.nc")
+    return fp.load(tmp_path / "whole" / "small.nc")
 
 
 def stopping(at, by):
@@ -93,7 +93,7 @@ def test_a_run_with_checkpoints_leaves_the_same_files(fpsolve, config, whole, tm
     figures = ["angle", "entropy", "marginals", "moments", "overview"]
     names = [*(f"small-{name}.png" for name in figures), "small.nc", "small.toml"]
     assert files(tmp_path / "out") == sorted(names)
-    assert_same_bits(io.load(tmp_path / "out" / "small.nc"), whole)
+    assert_same_bits(fp.load(tmp_path / "out" / "small.nc"), whole)
 
 
 def test_a_killed_run_is_resumed_to_the_same_files(fpsolve, whole, killed, tmp_path):
@@ -104,10 +104,10 @@ def test_a_killed_run_is_resumed_to_the_same_files(fpsolve, whole, killed, tmp_p
     )
     # Figures were switched off for the run, and so they are for the rest of it.
     assert files(tmp_path / "out") == ["small.nc", "small.toml"]
-    assert_same_bits(io.load(tmp_path / "out" / "small.nc"), whole)
+    assert_same_bits(fp.load(tmp_path / "out" / "small.nc"), whole)
     assert "estimated L1 error of the saved densities" in result.stdout
     toml = (tmp_path / "out" / "small.toml").read_text()
-    assert io.load(tmp_path / "out" / "small.nc").provenance["configuration"] == toml
+    assert fp.load(tmp_path / "out" / "small.nc").provenance["configuration"] == toml
 
 
 def test_the_same_command_goes_on_too(fpsolve, config, whole, killed, tmp_path):
@@ -115,7 +115,7 @@ def test_the_same_command_goes_on_too(fpsolve, config, whole, killed, tmp_path):
     result = fpsolve(*words)
     assert result.exit_code == 0, result.output
     assert "going on from `out/small.checkpoint` at s = 0.25" in result.stderr
-    assert_same_bits(io.load(tmp_path / "out" / "small.nc"), whole)
+    assert_same_bits(fp.load(tmp_path / "out" / "small.nc"), whole)
     assert files(tmp_path / "out") == ["small.nc", "small.toml"]
 
 
@@ -125,18 +125,18 @@ def test_a_result_can_be_written_elsewhere_and_the_checkpoint_kept(
     result = fpsolve("resume", killed, "--out", "there", "--keep-checkpoint")
     assert result.exit_code == 0, result.output
     assert files(tmp_path / "there") == ["small.nc", "small.toml"]
-    assert_same_bits(io.load(tmp_path / "there" / "small.nc"), whole)
+    assert_same_bits(fp.load(tmp_path / "there" / "small.nc"), whole)
     again = fpsolve("resume", killed)
     assert again.exit_code == 0, again.output
     assert "was finished; its result is written now" in again.stderr
-    assert_same_bits(io.load(tmp_path / "out" / "small.nc"), whole)
+    assert_same_bits(fp.load(tmp_path / "out" / "small.nc"), whole)
 
 
 def test_a_stored_zarr_is_written_from_the_checkpoint(fpsolve, config, whole, tmp_path):
     config.write_text(CONFIG + 'format = "zarr"\n')
     result = fpsolve("run", config, "--out", "out", "--checkpoint", 3, "--no-figures")
     assert result.exit_code == 0, result.output
-    assert_same_bits(io.load(tmp_path / "out" / "small.zarr"), whole)
+    assert_same_bits(fp.load(tmp_path / "out" / "small.zarr"), whole)
 
 
 def test_another_configuration_is_refused_naming_the_difference(
@@ -169,11 +169,11 @@ def test_ctrl_c_says_how_to_go_on(fpsolve, config, whole, tmp_path, monkeypatch)
         130,
     )
     assert status_of(tmp_path / KEPT).n_done == 5
-    partial = io.load(tmp_path / "out" / "small-interrupted.nc")
+    partial = fp.load(tmp_path / "out" / "small-interrupted.nc")
     assert partial.s[-1] == 0.625
     np.testing.assert_array_equal(partial.saved_s, [0.5])
     assert fpsolve("resume", KEPT).exit_code == 0
-    assert_same_bits(io.load(tmp_path / "out" / "small.nc"), whole)
+    assert_same_bits(fp.load(tmp_path / "out" / "small.nc"), whole)
 
 
 def test_a_full_disk_is_told_with_what_is_kept(
@@ -201,7 +201,7 @@ def test_a_full_disk_is_told_with_what_is_kept(
     assert f"`fpsolve resume {KEPT}`" in last
     assert files(tmp_path / "out") == ["small.checkpoint"]
     assert fpsolve("resume", KEPT).exit_code == 0
-    assert_same_bits(io.load(tmp_path / "out" / "small.nc"), whole)
+    assert_same_bits(fp.load(tmp_path / "out" / "small.nc"), whole)
 
 
 def test_a_checkpoint_from_python_is_completed_and_stays(fpsolve, tmp_path):
@@ -209,7 +209,7 @@ def test_a_checkpoint_from_python_is_completed_and_stays(fpsolve, tmp_path):
     result = fpsolve("resume", folder, "--out", "out", "--no-figures")
     assert result.exit_code == 0, result.output
     assert files(tmp_path / "out") == ["mine.nc"]
-    assert io.load(tmp_path / "out" / "mine.nc").status == "finished"
+    assert fp.load(tmp_path / "out" / "mine.nc").status == "finished"
     assert status_of(folder).finished
 
 
@@ -242,4 +242,4 @@ def test_a_process_that_is_killed_leaves_a_run_that_can_be_resumed(
     process.communicate(timeout=HANGS)
     assert status_of(tmp_path / KEPT).n_done == 10
     assert fpsolve("resume", KEPT).exit_code == 0
-    assert_same_bits(io.load(tmp_path / "out" / "small.nc"), whole)
+    assert_same_bits(fp.load(tmp_path / "out" / "small.nc"), whole)

@@ -10,7 +10,6 @@ from command_line import HANGS, assert_mistake, command_waiting_at, files
 from solutions import relaxing_solution
 
 import fpsolve as fp
-from fpsolve import io
 from fpsolve.cli.config import PathsConfig, load_config
 from fpsolve.pages.numbers import with_error
 
@@ -285,7 +284,7 @@ def test_a_movie_of_paths_is_refused_before_anything_is_drawn(
 
 
 def test_a_solution_is_still_drawn_with_its_movie(fpsolve, tmp_path):
-    path = io.save(relaxing_solution(), tmp_path / "run.nc")
+    path = relaxing_solution().save(tmp_path / "run.nc")
     result = fpsolve("plot", path, "--movie")
     assert result.exit_code == 0, result.output
     assert (tmp_path / "run.gif").exists()

@@ -136,7 +136,7 @@ def test_they_are_accepted_in_a_store_too(tmp_path):
 def test_an_older_file_does_not_name_its_attributes_and_is_read(tmp_path):
     from fpsolve._support import checksums
 
-    dataset = fp.io.to_xarray(table.solution())
+    dataset = table.solution().to_xarray()
     old = dataset.assign_attrs(
         {checksums.CHECKSUMS: json.dumps(checksums._digests(dataset))}
     )
@@ -207,7 +207,7 @@ def test_arrays_that_do_not_fit_their_attributes_are_refused(tmp_path):
         ({"saved_steps": "[0]"}, "`saved_steps` must be 3 steps as in `s`, got 1"),
         (steps, "`n_steps` must be the last step, got 2 before 40"),
     ):
-        path = fp.io.save(result_files.paths(), tmp_path / "a.nc")
+        path = result_files.paths().save(tmp_path / "a.nc")
         table.tampered(lambda one, new=change: one.attrs.update(new), path)
         with pytest.raises(FileFormatError, match=message):
             fp.load(path)
@@ -327,7 +327,7 @@ def test_a_recipe_that_is_none_is_told():
 
 
 def test_paths_of_other_length_than_their_file_are_not_repeated(tmp_path):
-    path = fp.io.save(result_files.paths(), tmp_path / "a.nc")
+    path = result_files.paths().save(tmp_path / "a.nc")
     text = rerun_of(path, lambda one: one.attrs.update(n_steps=10**6))
     assert "`n_steps` would give 60000000 in all, and it holds 2400" in text
 

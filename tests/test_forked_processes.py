@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from fpsolve import _threads
+from fpsolve._kernels import threads
 from fpsolve.errors import ForkedProcessError
 
 SCRIPT = '''
@@ -83,17 +83,17 @@ def test_a_pool_by_fork_gives_the_same_numbers_or_refuses(layer):
 
 
 def test_a_process_knows_whether_its_threads_were_left_behind(monkeypatch):
-    monkeypatch.setattr(_threads, "_region", _threads._Region())
-    _threads.check_not_forked()
-    monkeypatch.setattr(_threads, "_threads_do_not_survive", lambda: False)
-    _threads._after_fork()
-    _threads.check_not_forked()
-    monkeypatch.setattr(_threads, "_threads_do_not_survive", lambda: True)
-    _threads._after_fork()
+    monkeypatch.setattr(threads, "_region", threads._Region())
+    threads.check_not_forked()
+    monkeypatch.setattr(threads, "_threads_do_not_survive", lambda: False)
+    threads._after_fork()
+    threads.check_not_forked()
+    monkeypatch.setattr(threads, "_threads_do_not_survive", lambda: True)
+    threads._after_fork()
     # Of its own children none can use them either.
-    monkeypatch.setattr(_threads, "_threads_do_not_survive", lambda: False)
-    _threads._after_fork()
-    for use in (_threads.parallel_region, _threads.check_not_forked):
+    monkeypatch.setattr(threads, "_threads_do_not_survive", lambda: False)
+    threads._after_fork()
+    for use in (threads.parallel_region, threads.check_not_forked):
         with pytest.raises(ForkedProcessError, match=r"get_context\('spawn'\)"):
             use()
 

@@ -10,7 +10,7 @@ import pytest
 import xarray as xr
 from solutions import PROVENANCE, relaxing_solution
 
-from fpsolve import io
+import fpsolve as fp
 from fpsolve._support import files as atomic
 from fpsolve._support.netcdf import write_dataset
 from fpsolve.errors import FileFormatError
@@ -63,8 +63,8 @@ def assert_same(first, second):
 @pytest.mark.parametrize("suffix", SUFFIXES)
 def test_a_solution_comes_back_bit_for_bit(solution, tmp_path, suffix):
     path = tmp_path / f"result{suffix}"
-    assert io.save(solution, path) == path
-    assert_same(io.load(path), solution)
+    assert solution.save(path) == path
+    assert_same(fp.load(path), solution)
 
 
 @pytest.mark.parametrize("suffix", SUFFIXES)
@@ -74,8 +74,8 @@ def test_every_bit_pattern_of_a_density_survives(solution, tmp_path, suffix, rng
     densities = bits.view(np.float64)
     densities.flat[: len(special)] = special
     path = tmp_path / f"result{suffix}"
-    io.save(replace(solution, densities=densities), path)
-    assert same_bits(io.load(path).densities, densities)
+    replace(solution, densities=densities).save(path)
+    assert same_bits(fp.load(path).densities, densities)
 
 
 @pytest.mark.parametrize("suffix", SUFFIXES)
@@ -84,7 +84,7 @@ def test_a_run_stopped_before_its_first_saving_point_is_stored(tmp_path, suffix)
         saved=(), errors=False, status="interrupted", message="stopped by the user"
     )
     path = partial.save(tmp_path / f"result{suffix}")
-    assert_same(io.load(path), partial)
+    assert_same(fp.load(path), partial)
 
 
 @pytest.mark.parametrize("suffix", SUFFIXES)
@@ -93,7 +93,7 @@ def test_a_run_stopped_before_its_first_record_is_stored(tmp_path, suffix):
     partial = relaxing_solution(
         saved=(), errors=False, series=nothing, status="interrupted"
     )
-    assert_same(io.load(partial.save(tmp_path / f"result{suffix}")), partial)
+    assert_same(fp.load(partial.save(tmp_path / f"result{suffix}")), partial)
 
 
 @pytest.mark.parametrize(
@@ -111,8 +111,8 @@ def test_a_run_stopped_before_its_first_record_is_stored(tmp_path, suffix):
 )
 def test_every_curve_comes_back(solution, tmp_path, curve):
     model = LayDownModel(QuadraticPotential(), noise=0.1, curve=curve)
-    path = io.save(replace(solution, model=model), tmp_path / "result.nc")
-    assert io.load(path).model == model
+    path = replace(solution, model=model).save(tmp_path / "result.nc")
+    assert fp.load(path).model == model
 
 
 @pytest.mark.parametrize(
@@ -127,8 +127,8 @@ def test_every_curve_comes_back(solution, tmp_path, curve):
 )
 def test_every_potential_comes_back(solution, tmp_path, potential):
     model = LayDownModel(potential, noise=1.0)
-    path = io.save(replace(solution, model=model), tmp_path / "result.nc")
-    assert io.load(path).model == model
+    path = replace(solution, model=model).save(tmp_path / "result.nc")
+    assert fp.load(path).model == model
 
 
 def quartic(xi1, xi2):
@@ -142,16 +142,16 @@ def quartic_gradient(xi1, xi2):
 
 def test_a_model_of_functions_leaves_its_description(solution, tmp_path):
     model = LayDownModel(CallablePotential(quartic, quartic_gradient), noise=1.0)
-    io.save(replace(solution, model=model), tmp_path / "first.nc")
+    replace(solution, model=model).save(tmp_path / "first.nc")
     with pytest.warns(UserWarning, match=r"could not be read back, so `model` is None"):
-        loaded = io.load(tmp_path / "first.nc")
+        loaded = fp.load(tmp_path / "first.nc")
     assert loaded.model is None
     assert "value=quartic" in loaded.provenance["model_description"]
     assert loaded.provenance["equation"] == model.equation
     # The description goes on when the solution is stored again.
-    io.save(loaded, tmp_path / "second.nc")
+    loaded.save(tmp_path / "second.nc")
     with pytest.warns(UserWarning, match="could not be read back"):
-        again = io.load(tmp_path / "second.nc")
+        again = fp.load(tmp_path / "second.nc")
     assert again.provenance == loaded.provenance
 
 
@@ -182,7 +182,7 @@ def test_the_dataset_says_what_was_solved(solution):
 
 
 def test_other_programs_read_the_file(solution, tmp_path):
-    path = io.save(solution, tmp_path / "result.nc")
+    path = solution.save(tmp_path / "result.nc")
     with xr.open_dataset(path, engine="h5netcdf") as dataset:
         density = dataset["density"].sel(s=2.0)
         np.testing.assert_array_equal(density, solution.density(2.0))
@@ -192,7 +192,7 @@ def test_other_programs_read_the_file(solution, tmp_path):
 def test_a_failed_write_leaves_the_old_file_and_nothing_else(
     solution, tmp_path, suffix, monkeypatch
 ):
-    path = io.save(solution, tmp_path / f"result{suffix}")
+    path = solution.save(tmp_path / f"result{suffix}")
 
     def half_written(dataset, draft, **options):
         Path(draft).write_bytes(b"half")
@@ -201,9 +201,9 @@ def test_a_failed_write_leaves_the_old_file_and_nothing_else(
     monkeypatch.setattr(xr.Dataset, "to_netcdf", half_written)
     monkeypatch.setattr(xr.Dataset, "to_zarr", half_written)
     with pytest.raises(OSError, match="no space left"):
-        io.save(replace(solution, ds=1.0), path)
+        replace(solution, ds=1.0).save(path)
     assert list(tmp_path.iterdir()) == [path]
-    assert_same(io.load(path), solution)
+    assert_same(fp.load(path), solution)
 
 
 def test_an_interrupted_write_leaves_nothing(solution, tmp_path, monkeypatch):
@@ -213,22 +213,22 @@ def test_an_interrupted_write_leaves_nothing(solution, tmp_path, monkeypatch):
 
     monkeypatch.setattr(xr.Dataset, "to_netcdf", interrupted)
     with pytest.raises(KeyboardInterrupt):
-        io.save(solution, tmp_path / "result.nc")
+        solution.save(tmp_path / "result.nc")
     assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.parametrize("suffix", SUFFIXES)
 def test_a_new_result_takes_the_place_of_the_old_one(solution, tmp_path, suffix):
-    path = io.save(solution, tmp_path / f"result{suffix}")
-    io.save(replace(solution, ds=1.0), path)
-    assert io.load(path).ds == 1.0
+    path = solution.save(tmp_path / f"result{suffix}")
+    replace(solution, ds=1.0).save(path)
+    assert fp.load(path).ds == 1.0
     assert list(tmp_path.iterdir()) == [path]
 
 
 def test_an_older_store_returns_when_the_new_one_cannot_be_moved(
     solution, tmp_path, monkeypatch
 ):
-    path = io.save(solution, tmp_path / "result.zarr")
+    path = solution.save(tmp_path / "result.zarr")
     rename = Path.rename
 
     def refuse_the_draft(self, target):
@@ -238,9 +238,9 @@ def test_an_older_store_returns_when_the_new_one_cannot_be_moved(
 
     monkeypatch.setattr(Path, "rename", refuse_the_draft)
     with pytest.raises(OSError, match="device is gone"):
-        io.save(replace(solution, ds=1.0), path)
+        replace(solution, ds=1.0).save(path)
     assert list(tmp_path.iterdir()) == [path]
-    assert io.load(path).ds == solution.ds
+    assert fp.load(path).ds == solution.ds
 
 
 def test_a_folder_of_something_else_is_never_replaced(solution, tmp_path):
@@ -248,35 +248,35 @@ def test_a_folder_of_something_else_is_never_replaced(solution, tmp_path):
     precious.mkdir()
     (precious / "thesis.tex").write_text("years of work")
     with pytest.raises(IsADirectoryError, match=r"`path` must not be a folder, got"):
-        io.save(solution, precious)
+        solution.save(precious)
     assert (precious / "thesis.tex").read_text() == "years of work"
 
 
 def test_a_file_never_replaces_a_store(solution, tmp_path):
-    path = io.save(solution, tmp_path / "result.zarr")
+    path = solution.save(tmp_path / "result.zarr")
     with pytest.raises(IsADirectoryError, match=r"`path` must not be a folder, got"):
-        io.save(solution, path, engine="h5netcdf")
+        solution.save(path, engine="h5netcdf")
     assert list(tmp_path.iterdir()) == [path]
-    assert_same(io.load(path), solution)
+    assert_same(fp.load(path), solution)
 
 
 def test_the_folder_of_a_file_must_exist(solution, tmp_path):
     with pytest.raises(FileNotFoundError, match=r"must lie in an existing folder.*new"):
-        io.save(solution, tmp_path / "new" / "result.nc")
+        solution.save(tmp_path / "new" / "result.nc")
 
 
 def test_engines_are_named(solution, tmp_path):
     with pytest.raises(ValueError, match=r"`engine` must be one of 'h5netcdf', 'zarr'"):
-        io.save(solution, tmp_path / "result.nc", engine="pickle")
+        solution.save(tmp_path / "result.nc", engine="pickle")
 
 
 @pytest.mark.parametrize("share", [0.0, 0.001, 0.1, 0.5, 0.999])
 def test_a_truncated_file_is_refused(solution, tmp_path, share):
-    path = io.save(solution, tmp_path / "result.nc")
+    path = solution.save(tmp_path / "result.nc")
     content = path.read_bytes()
     path.write_bytes(content[: int(share * len(content))])
     with pytest.raises(FileFormatError, match=r"cannot read `.*result.nc`: ") as caught:
-        io.load(path)
+        fp.load(path)
     assert caught.value.path == path
 
 
@@ -284,19 +284,19 @@ def test_a_file_of_another_kind_is_refused(tmp_path):
     path = tmp_path / "notes.txt"
     path.write_text("not a result")
     with pytest.raises(FileFormatError, match="it is not a netCDF-4 file"):
-        io.load(path)
+        fp.load(path)
 
 
 def test_a_netcdf_file_of_another_program_is_refused(tmp_path):
     path = tmp_path / "weather.nc"
     xr.Dataset({"rain": ("day", [1.0, 2.0])}).to_netcdf(path, engine="h5netcdf")
     with pytest.raises(FileFormatError, match="it is not a result of fpsolve"):
-        io.load(path)
+        fp.load(path)
 
 
 def test_a_store_without_anything_is_refused(tmp_path):
     with pytest.raises(FileFormatError, match=r"cannot read `.*`: "):
-        io.load(tmp_path)
+        fp.load(tmp_path)
 
 
 def test_a_layout_from_the_future_is_refused(solution, tmp_path):
@@ -304,7 +304,7 @@ def test_a_layout_from_the_future_is_refused(solution, tmp_path):
     dataset.attrs["fpsolve_format"] = 99
     dataset.to_netcdf(tmp_path / "result.nc", engine="h5netcdf")
     with pytest.raises(FileFormatError, match=r"it has layout 99.*update fpsolve"):
-        io.load(tmp_path / "result.nc")
+        fp.load(tmp_path / "result.nc")
 
 
 def test_a_missing_variable_is_named(solution, tmp_path):
@@ -314,12 +314,12 @@ def test_a_missing_variable_is_named(solution, tmp_path):
     with pytest.raises(
         FileFormatError, match=r"`entropy_floor`, `scheme` is missing in it\."
     ):
-        io.load(tmp_path / "result.nc")
+        fp.load(tmp_path / "result.nc")
 
 
 def test_a_file_that_is_not_there_is_named(tmp_path):
     with pytest.raises(FileNotFoundError, match=r"`path` must exist to be read.*none"):
-        io.load(tmp_path / "none.nc")
+        fp.load(tmp_path / "none.nc")
 
 
 def on_a_disk_with(free, monkeypatch):
@@ -339,7 +339,7 @@ def test_a_file_that_does_not_fit_is_refused_before_hdf5_meets_the_full_disk(
     with pytest.raises(OSError, match=r"No space left on device \(\d+ MiB needed, "):
         solution.save(path)
     with pytest.raises(OSError, match="No space left on device"):
-        write_dataset(io.to_xarray(solution), path)
+        write_dataset(solution.to_xarray(), path)
     assert not list(tmp_path.iterdir())
     # Series, coordinates and a mebibyte for what describes them.
     on_a_disk_with(size + 2**21, monkeypatch)

@@ -9,7 +9,6 @@ import xarray as xr
 from solutions import relaxing_solution
 
 import fpsolve as fp
-from fpsolve import io
 from fpsolve.errors import FileFormatError
 from fpsolve.paths import DensityLaw, EquilibriumLaw, GaussianLaw, PointLaw
 from fpsolve.paths.ensemble import Ensemble
@@ -282,9 +281,9 @@ def test_other_programs_read_the_file(paths, tmp_path):
 
 def test_what_a_file_holds_decides_what_is_loaded(paths, tmp_path):
     solution = relaxing_solution(errors=False)
-    io.save(solution, tmp_path / "result.nc")
+    solution.save(tmp_path / "result.nc")
     assert isinstance(fp.load(tmp_path / "result.nc"), fp.Solution)
-    io.save(paths, tmp_path / "result.nc")
+    paths.save(tmp_path / "result.nc")
     assert isinstance(fp.load(tmp_path / "result.nc"), fp.Paths)
 
 

@@ -10,13 +10,11 @@ from malformed.command_lines import MISTAKES, USAGE
 from solutions import relaxing_solution
 from test_malformed_configurations import assert_one_line, everything
 
-from fpsolve import io
-
 
 @pytest.fixture(scope="module")
 def stored(tmp_path_factory):
     folder = tmp_path_factory.mktemp("stored")
-    io.save(relaxing_solution(), folder / "result.nc")
+    relaxing_solution().save(folder / "result.nc")
     results.write_paths(folder / "paths.nc")
     return folder
 

@@ -8,7 +8,7 @@ from malformed import stores
 from malformed.cases import assert_said, parametrised
 from test_malformed_configurations import everything
 
-from fpsolve import io
+import fpsolve as fp
 from fpsolve.errors import FileFormatError
 
 
@@ -33,7 +33,7 @@ def assert_refused(case, path, fpsolve, folder):
     damaged = case.do(path)
     before = everything(folder)
     with pytest.raises(FileFormatError) as caught:
-        io.load(damaged)
+        fp.load(damaged)
     assert caught.value.path == damaged
     assert_said(str(caught.value), case)
     result = fpsolve("plot", damaged.name, "--out", "figures")
@@ -77,7 +77,7 @@ def same(first, second):
 def test_a_file_of_an_older_version_without_checksums_is_read(pristine, tmp_path):
     path = copied(pristine["solution"], "result.nc", tmp_path)
     table.tampered(lambda dataset: None, path)
-    assert same(io.load(path), io.load(pristine["solution"]))
+    assert same(fp.load(path), fp.load(pristine["solution"]))
 
 
 def test_checksums_do_not_depend_on_where_a_result_is_stored(pristine):

@@ -13,7 +13,6 @@ from malformed import configurations, files, problems
 from solutions import relaxing_solution
 
 import fpsolve as fp
-from fpsolve import io
 from fpsolve.cli.config import RunConfig, read_config
 from fpsolve.errors import ConfigurationError, FileFormatError
 from fpsolve.evolution.schedule import make_schedule
@@ -50,7 +49,7 @@ TAKERS = {
     "speed ratio": lambda x: fp.Process(**{**PROCESS, "speed_ratio": x}),
     "energy": lambda x: problems.energy().period(x),
     "place": lambda x: problems.solution().density(x),
-    "path": lambda x: io.load(x),
+    "path": lambda x: fp.load(x),
     "order": lambda x: fp.drift_kick(
         problems.model(), problems.grid(), interpolation_order=x),
     "table": lambda x: fp.TabulatedCurve(x, x, x),
@@ -177,8 +176,8 @@ def test_every_solution_survives_a_file_bit_for_bit(
 ):
     model = LayDownModel(potential, noise, curve)
     written = relaxing_solution(model, saved=saved, errors=errors and bool(saved))
-    path = io.save(written, tmp_path_factory.mktemp("stored") / "result", engine)
-    found = io.load(path)
+    path = written.save(tmp_path_factory.mktemp("stored") / "result", engine)
+    found = fp.load(path)
     assert found.model == model
     assert found.densities.tobytes() == written.densities.tobytes()
     for name, series in written.series.items():
@@ -192,7 +191,7 @@ def test_a_flipped_bit_is_recognised_or_harmless(content, place, bit):
     damaged = bytearray(original)
     damaged[int(place * len(damaged))] ^= 1 << bit
     path.write_bytes(damaged)
-    found, error = given_.outcome(lambda: io.load(path))
+    found, error = given_.outcome(lambda: fp.load(path))
     if error:
         assert isinstance(error, FileFormatError)
     else:
@@ -203,7 +202,7 @@ def test_a_flipped_bit_is_recognised_or_harmless(content, place, bit):
 @pytest.fixture(scope="module")
 def content(tmp_path_factory):
     expected = files.solution()
-    path = io.save(expected, tmp_path_factory.mktemp("flipped") / "result.nc")
+    path = expected.save(tmp_path_factory.mktemp("flipped") / "result.nc")
     return path, path.read_bytes(), expected
 
 

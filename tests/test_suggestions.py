@@ -8,8 +8,8 @@ import pytest
 from mixtures import two_wells
 
 import fpsolve as fp
-from fpsolve import suggestions
 from fpsolve.cli.config import RunConfig
+from fpsolve.studies import suggested_grid
 
 
 def model(noise=1.0, potential=None, curve=None):
@@ -67,7 +67,7 @@ def test_the_box_follows_the_belt_and_the_anisotropy():
 def test_the_belt_shift_tends_to_the_mean_of_the_hydrodynamic_limit():
     shifted = model(2.0, curve=fp.MovingBelt(0.001))
     # ⟨ξ1⟩ = A²k/2 with k → 2v as v → 0; the next term is of relative order v².
-    assert suggestions.belt_shift(shifted) == pytest.approx(0.004, rel=1e-5)
+    assert suggested_grid.belt_shift(shifted) == pytest.approx(0.004, rel=1e-5)
 
 
 def share_outside(grid, model, s_end, law=None):

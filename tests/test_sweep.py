@@ -315,7 +315,7 @@ def test_a_script_without_a_guard_is_not_run_again(tmp_path):
     found = run_script(tmp_path, """
         print("here")
         from sweep_functions import square
-        from fpsolve.studies.rates.sweep import sweep
+        from fpsolve.studies.sweeps.sweep import sweep
         cases = sweep(square, [{"x": 1}, {"x": 2}], workers=1)
         print([case.status for case in cases])
         """)  # fmt: skip
@@ -325,7 +325,7 @@ def test_a_script_without_a_guard_is_not_run_again(tmp_path):
 
 def test_a_script_without_a_guard_whose_own_function_is_needed_is_told_so(tmp_path):
     found = run_script(tmp_path, """
-        from fpsolve.studies.rates.sweep import sweep
+        from fpsolve.studies.sweeps.sweep import sweep
         def twice(x):
             return {"value": 2.0 * x}
         sweep(twice, [{"x": 1}, {"x": 2}], workers=1)

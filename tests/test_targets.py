@@ -188,7 +188,7 @@ def test_rerun_refuses_before_it_computes(fpsolve, tmp_path):
 
 KILLED = """
 import os, signal, sys
-from fpsolve.io.atomic import atomic_path
+from fpsolve._support.files import atomic_path
 with atomic_path(sys.argv[1]) as draft:
     draft.write_text("half")
     os.kill(os.getpid(), signal.SIGKILL)

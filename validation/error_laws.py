@@ -16,7 +16,7 @@ import numpy as np
 from reporting import Report, restricted
 
 import fpsolve as fp
-from fpsolve import suggestions
+from fpsolve.density import error_laws
 from fpsolve.model.potentials.nodes import gibbs_nodes
 
 
@@ -97,8 +97,8 @@ def measure(case: Case, tolerance: float, s_end: float, refinement: float) -> di
 
 
 def law(case: Case, grid) -> float:
-    force = suggestions.mean_square_force(case.model, grid)
-    return suggestions.splitting_coefficient(case.model, force)
+    force = error_laws.mean_square_force(case.model, grid)
+    return error_laws.splitting_coefficient(case.model, force)
 
 
 def main() -> None:

@@ -27,7 +27,7 @@ SMALL = {
 LARGE = {"|ξ|²/2": (QUADRATIC, 1.5), "|ξ|": (LINEAR, -1 / 48)}
 
 
-def gap(potential: fp.potentials.Potential, noise: float, tolerance: float) -> float:
+def gap(potential: fp.Potential, noise: float, tolerance: float) -> float:
     return float(spectral_gap(fp.LayDownModel(potential, noise), tolerance=tolerance))
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 import fpsolve as fp
-from fpsolve import interop, io, plotting, studies
+from fpsolve import interop, plotting, studies
 from fpsolve.cli.config import load_config
 from fpsolve.errors import MemoryLimitError
 
@@ -104,20 +104,18 @@ FIGURES = [
     Case("figures into a file",
          lambda: plotting.save_figures(at.solution(), __file__), "answers.py",
          "`directory` must be a folder", NotADirectoryError),
-    Case("result saved as nothing", lambda: io.save(None, "result.nc"),
-         "got NoneType", "`result` must be", TypeError),
-    Case("result saved in a number", lambda: io.save(at.solution(), 3),
+    Case("result saved in a number", lambda: at.solution().save(3),
          "got 3", "name of a file", TypeError),
     Case("result saved by an unknown engine",
-         lambda: io.save(at.solution(), "result.nc", "pickle"),
+         lambda: at.solution().save("result.nc", "pickle"),
          "got 'pickle'", "'h5netcdf', 'zarr'"),
-    Case("result saved nowhere", lambda: io.save(at.solution(), "none/result.nc"),
+    Case("result saved nowhere", lambda: at.solution().save("none/result.nc"),
          "got `none/result.nc`", "create `none` first", FileNotFoundError),
-    Case("result loaded from nothing", lambda: io.load(None),
+    Case("result loaded from nothing", lambda: fp.load(None),
          "got None", "name of a file", TypeError),
-    Case("result loaded from nowhere", lambda: io.load("none.nc"),
+    Case("result loaded from nowhere", lambda: fp.load("none.nc"),
          "got `none.nc`", "must exist to be read", FileNotFoundError),
-    Case("result loaded from a name of zeros", lambda: io.load("result\0.nc"),
+    Case("result loaded from a name of zeros", lambda: fp.load("result\0.nc"),
          "result", "must be the name of a file"),
     Case("configuration in a number", lambda: load_config(3),
          "got 3", "`config` must be the name of a file", TypeError),

@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 from solutions import relaxing_solution
 
-from fpsolve import io
+import fpsolve as fp
 
 from . import problems
 from .cases import Case
@@ -41,7 +41,7 @@ def flipped(seed):
 
     def damage(path):
         content = bytearray(path.read_bytes())
-        density = io.load(path).densities.tobytes()
+        density = fp.load(path).densities.tobytes()
         start = content.index(density[: 8 * 64])
         place, bit = np.random.default_rng(seed).integers((len(density), 8))
         content[start + int(place)] ^= 1 << int(bit)
@@ -231,8 +231,8 @@ FILES = [*TRUNCATED, *FLIPPED, *OTHERS, *TAMPERED]
 
 
 def write_solution(path):
-    return io.save(solution(), path)
+    return solution().save(path)
 
 
 def write_paths(path):
-    return io.save(replace(problems.paths()), path)
+    return replace(problems.paths()).save(path)

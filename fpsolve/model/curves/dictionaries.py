@@ -37,7 +37,7 @@ def curve_to_dict(curve: Curve) -> dict[str, Any]:
 
     That of fpsolve's own curves is what their `to_dict` says, which `curve_from_dict`
     reads. To that of a user's own class, whatever it says, a digest of positions and
-    velocities is added (see `fpsolve.curves.samples`), and `curve_from_dict` refuses
+    velocities is added (see `model.curves.samples`), and `curve_from_dict` refuses
     it.
     """
     if type(curve) in KINDS.values():

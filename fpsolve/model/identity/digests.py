@@ -62,7 +62,7 @@ def identity_digest(value: Any, *, sampled: bool = True) -> str:
     value : object
     sampled : bool
         A user's potentials and curves are also known by what they compute (see
-        `fpsolve.potentials.samples`), and by this alone if they hold something with
+        `model.potentials.samples`), and by this alone if they hold something with
         neither code nor data. False leaves this out, and so the rounding of a machine.
 
     Raises

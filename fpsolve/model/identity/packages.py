@@ -13,7 +13,7 @@ from pathlib import Path
 
 __all__ = ["package_of_class", "package_of_file", "package_of_module"]
 
-_OWN = Path(__file__).parents[1]
+_OWN = Path(__file__).parents[2]
 _PACKAGES = {"site-packages", "dist-packages"}
 _STANDARD = tuple(sysconfig.get_path(name) for name in ("stdlib", "platstdlib"))
 

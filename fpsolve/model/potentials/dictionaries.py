@@ -34,7 +34,7 @@ def potential_to_dict(potential: Potential) -> dict[str, Any]:
     That of fpsolve's own potentials is what their `to_dict` says, which
     `potential_from_dict` reads. To that of a user's own class, and of a user's
     functions, whatever it says, a digest of values and gradients is added (see
-    `fpsolve.potentials.samples`), and `potential_from_dict` refuses it.
+    `fpsolve.model.potentials.samples`), and `potential_from_dict` refuses it.
     """
     if type(potential) in KINDS.values():
         return potential.to_dict()

@@ -28,7 +28,7 @@ class CaseStore:
     The name of a file is a digest of the function, the case and the versions of fpsolve
     and of what it computes with, so that several sweeps can share a folder and a
     changed case is a new one. Functions and arguments are known by what they are, not
-    by their names; see `fpsolve.identity.identity_digest` for what that sees.
+    by their names; see `identity_digest` for what that sees.
 
     Parameters
     ----------

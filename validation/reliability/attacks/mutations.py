@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 import fpsolve as fp
-from fpsolve import diagnostics, initial, interop, io, studies
+from fpsolve import diagnostics, initial, interop, studies
 
 from .families import family
 
@@ -219,7 +219,7 @@ CALLS: dict[str, tuple[Callable[..., Any], Callable[[], dict[str, Any]]]] = {
     "from_pde_field": (fp.from_pde_field, lambda: {
         "field": fp.to_pde_field(p0(), grid())}),
     "FokkerPlanckPDE": (interop.FokkerPlanckPDE, lambda: {"model": model()}),
-    "io.save": (io.save, lambda: {"result": solution(), "path": "b.nc"}),
+    "save": (fp.Solution.save, lambda: {"self": solution(), "path": "b.nc"}),
     "load": (fp.load, lambda: {"path": "missing.nc"}),
     "compare": (fp.compare, lambda: {"a": solution(), "b": solution()}),
     "rerun": (fp.rerun, lambda: {"result": solution()}),

@@ -123,9 +123,7 @@ def files_keep_every_bit(rng: Any, notes: Any) -> None:
     result = any_result(rng, notes, named=rng.random() < 0.7)
     name = one_of(rng, "a.nc", "a.zarr", "ä b.nc")
     notes.say(f"save to {name!r}, load, compare")
-    from fpsolve import io
-
-    io.save(result, name)
+    result.save(name)
     back = fp.load(name)
     notes.holds("the same kind", type(back) is type(result))
     for key, value in arrays_of(result).items():
@@ -162,9 +160,7 @@ def repetitions_are_the_same(rng: Any, notes: Any) -> None:
     """`rerun` of a loaded file gives the same bits."""
     result = any_result(rng, notes)
     notes.say("save, load, rerun, compare")
-    from fpsolve import io
-
-    io.save(result, "a.nc")
+    result.save("a.nc")
     again = fp.rerun("a.nc")
     told = fp.compare(result, again)
     notes.holds(f"the same, not {told.differing}", told.equal)
