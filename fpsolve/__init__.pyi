@@ -30,6 +30,7 @@ from .errors import NegativeDensityError as NegativeDensityError
 from .errors import NonFiniteDensityError as NonFiniteDensityError
 from .errors import NonFinitePathError as NonFinitePathError
 from .errors import NotRepeatableError as NotRepeatableError
+from .errors import ObservationError as ObservationError
 from .errors import RunInterrupted as RunInterrupted
 from .errors import SteadyStateError as SteadyStateError
 from .grids import diagnostics as diagnostics

@@ -30,6 +30,7 @@ __all__ = [
     "NonFiniteDensityError",
     "NonFinitePathError",
     "NotRepeatableError",
+    "ObservationError",
     "RunError",
     "RunInterrupted",
     "SteadyStateError",
@@ -325,6 +326,27 @@ class MemoryLimitError(FpsolveError):
         )
         self.required = required
         self.available = available
+
+
+class ObservationError(RunError):
+    """A function of the caller's own, given as `observe`, gave no finite number.
+
+    Parameters
+    ----------
+    name : str
+        That of the series.
+    s : float
+        Arclength of the density that it was asked for.
+    reason : str
+    """
+
+    def __init__(self, name: str, s: float, reason: str) -> None:
+        super().__init__(
+            f"`observe[{name!r}]` must give a finite number for every density, failed "
+            f"at s = {s:g}: {reason.rstrip('.')}; try it on p0 and the grid."
+        )
+        self.name = name
+        self.s = s
 
 
 class NotRepeatableError(FpsolveError, ValueError):

@@ -38,7 +38,7 @@ def relaxing_solution(
     for s in np.linspace(0.0, 5.0, 41):
         share = np.exp(-RATE * s)
         p = share * start + (1 - share) * end
-        recorder.record(p, s, mass_correction=0.0)
+        recorder.record(p, s, {"mass_correction": 0.0})
         if s in saved:
             densities.append(p)
     series = recorder.series()

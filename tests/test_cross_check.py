@@ -372,7 +372,7 @@ def test_memory_does_not_depend_on_the_number_of_paths(monkeypatch):
         asked.update(options)
         return sample_paths(*arguments, **options)
 
-    monkeypatch.setattr("fpsolve.paths.sample_paths", recorded)
+    monkeypatch.setattr("fpsolve.paths.sampling.sample_paths", recorded)
     cross_check(MODEL, START, 0.5, grid=GRID, n_paths=2000, seed=1)
     assert asked["keep"] is False
     assert asked["histogram"] == GRID

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fpsolve.density.solution import Solution
+from fpsolve.evolution.series import is_extrapolated
 from fpsolve.evolution.stored import CombinedDensities, LazyDensities
 from fpsolve.grids import diagnostics
 
@@ -23,17 +24,6 @@ LARGEST_DIFFUSION, LARGEST_TURN = 5.0, 3.0
 # Half width of the window of an estimate, relative to that of the box: a quarter turn
 # of a fibre, for a box of four to eight throwing ranges, lasts longer.
 _WINDOW = 1 / 6
-# These are not approximations of anything that depends on ds: the coordinate, and
-# what describes the finer run itself.
-NOT_EXTRAPOLATED = (
-    "s",
-    "minimum",
-    "negative_mass",
-    "boundary_mass",
-    "mass_correction",
-    "entropy_rise",
-    "theta",
-)
 
 
 def extrapolated(coarse: Solution, fine: Solution, order: int) -> Solution:
@@ -66,7 +56,7 @@ def extrapolated(coarse: Solution, fine: Solution, order: int) -> Solution:
         errors[name] = allowed * largest_nearby(fine.s, np.abs(change), reach)
         # Both runs begin with the same density.
         errors[name][0] = allowed * abs(change[0])
-        if name not in NOT_EXTRAPOLATED:
+        if is_extrapolated(name):
             series[name] = values + gain * change
     distances = [
         allowed * diagnostics.l1_distance(p, q, fine.grid)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,7 @@ from fpsolve.density.recorder import Recorder
 from fpsolve.density.schemes.scheme import Scheme
 from fpsolve.density.snapshot import Snapshot, fields_of, rows_to_array
 from fpsolve.evolution.schedule import Schedule
+from fpsolve.evolution.series import Series
 
 __all__ = ["Pass"]
 
@@ -30,10 +32,15 @@ class Pass:
     """
 
     def __init__(
-        self, scheme: Scheme, p0: Array, reference: Array | None, schedule: Schedule
+        self,
+        scheme: Scheme,
+        p0: Array,
+        reference: Array | None,
+        observed: Sequence[Series],
+        schedule: Schedule,
     ) -> None:
         self.scheme, self.schedule = scheme, schedule
-        self.recorder = Recorder(scheme.model, scheme.grid, reference)
+        self.recorder = Recorder(scheme.model, scheme.grid, reference, observed)
         self.state = scheme.start(p0)
         self.step, self.settled = 0, False
         self.watch = Stopwatch()

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from fpsolve.evolution.series import SERIES, Series
 from fpsolve.grids import diagnostics
 from fpsolve.grids.circulation import Circulation, obeys_circulation_law, remaining
 from fpsolve.grids.phase_space import PhaseSpaceGrid
@@ -22,16 +24,11 @@ Array = NDArray[np.float64]
 
 # A share of H that matters: a warning tells where B beyond 690 is not counted.
 _UNCOUNTED = 1e-3
-BASIC = (
-    "s",
-    "mass",
-    "relative_entropy",
-    "entropy_dissipation",
-    "minimum",
-    "negative_mass",
-    "boundary_mass",
-    "mass_correction",
-)
+# What every run records; a run that ends before its first record has these, empty.
+ALWAYS = (
+    "s", "mass", "relative_entropy", "entropy_dissipation", "minimum", "negative_mass",
+    "boundary_mass", "mass_correction",
+)  # fmt: skip
 
 
 def uncounted(potential: Potential, grid: PhaseSpaceGrid, ratio: float) -> Array | None:
@@ -40,6 +37,72 @@ def uncounted(potential: Potential, grid: PhaseSpaceGrid, ratio: float) -> Array
     level = potential.normalisation.log_value + math.log(2 * math.pi / ratio)
     beyond = np.maximum(0.0, value + level + math.log(SMALLEST))
     return beyond if beyond.any() else None
+
+
+class Record:
+    """One step of a run, of which every series says what it takes from it.
+
+    Attributes
+    ----------
+    p : ndarray, shape (n1, n2, n_alpha)
+    s : float
+    grid : PhaseSpaceGrid
+    sums : RowFunctionals
+        Of the density, in one pass over it.
+    report : mapping of float
+        What the scheme says of the steps before.
+    """
+
+    def __init__(
+        self, recorder: Recorder, p: Array, s: float, report: Mapping[str, float]
+    ) -> None:
+        self.recorder, self.p, self.s, self.report = recorder, p, s, report
+        self.grid = recorder.grid
+        self.sums = RowFunctionals(p, self.grid, recorder.inverse)
+        self.moments = self.sums.moments()
+        self.boundary_mass = diagnostics.ring_share(np.abs(self.sums.rows[0]))
+
+    @cached_property
+    def relative_entropy(self) -> float:
+        """H(p|r); NaN without a reference or a finite mass."""
+        known = self.recorder
+        if known.reference is None or not math.isfinite(self.sums.mass()):
+            return math.nan
+        if known.inverse is None:
+            return diagnostics.relative_entropy(self.p, self.grid, known.reference)
+        return self.sums.relative_entropy(known.ratio)
+
+    @cached_property
+    def entropy_dissipation(self) -> float:
+        """−dH/ds by the angle alone; NaN where H is."""
+        known, noise = self.recorder, self.recorder.model.noise
+        if known.reference is None or not math.isfinite(self.sums.mass()):
+            return math.nan
+        if known.inverse is None:
+            arguments = self.p, self.grid, noise, known.reference
+            return diagnostics.entropy_dissipation(*arguments)
+        return self.sums.entropy_dissipation(noise)
+
+    @property
+    def entropy_rise(self) -> float | None:
+        """H minus the smallest H before, on a belt at rest."""
+        return self.recorder.rise(self.relative_entropy)
+
+    @cached_property
+    def circulation(self) -> float | None:
+        """E G/max |G| where it obeys its law."""
+        known = self.recorder.circulation
+        return None if known is None else known.of(self.sums)
+
+    @property
+    def circulation_deviation(self) -> float | None:
+        """E G minus what the law leaves of that at the start."""
+        if self.circulation is None:
+            return None
+        first = self.recorder.first
+        start = first or {"s": self.s, "circulation": self.circulation}
+        left = remaining(self.recorder.model.noise, self.s - start["s"])
+        return self.circulation - left * start["circulation"]
 
 
 class Recorder:
@@ -56,6 +119,8 @@ class Recorder:
     reference : ndarray, shape (n1, n2) or (n1, n2, n_alpha), or None
         What the entropy is relative to; p_S where e^{−B} is normalisable, and for
         other potentials nothing: entropy and dissipation are then NaN.
+    observed : sequence of Series
+        Numbers of the caller's own, beside those of `SERIES`.
 
     Warns
     -----
@@ -64,9 +129,13 @@ class Recorder:
     """
 
     def __init__(
-        self, model: LayDownModel, grid: PhaseSpaceGrid, reference: Array | None = None
+        self,
+        model: LayDownModel,
+        grid: PhaseSpaceGrid,
+        reference: Array | None = None,
+        observed: Sequence[Series] = (),
     ) -> None:
-        self.model, self.grid = model, grid
+        self.model, self.grid, self.observed = model, grid, observed
         given = reference
         self.falls = reference is None and model.has_equilibrium
         self.lowest = math.inf
@@ -93,37 +162,32 @@ class Recorder:
         self.first: dict[str, float] = {}
         self.rows: list[dict[str, float]] = []
 
-    def record(self, p: Array, s: float, **extra: float) -> dict[str, float]:
-        """Add one record and return it."""
-        found = RowFunctionals(p, self.grid, self.inverse)
-        values = {
-            "s": s,
-            "mass": found.mass(),
-            **self._entropy(p, found),
-            "minimum": found.minimum(),
-            "negative_mass": found.negative_mass(),
-            "boundary_mass": diagnostics.ring_share(np.abs(found.rows[0])),
-            **extra,
-            **found.moments(),
+    def record(
+        self, p: Array, s: float, told: Mapping[str, float] | None = None
+    ) -> dict[str, float]:
+        """Add one record and return it.
+
+        Parameters
+        ----------
+        p : ndarray, shape (n1, n2, n_alpha)
+        s : float
+        told : mapping of float, optional
+            What the scheme says of the steps before; each becomes a series.
+        """
+        found = Record(self, p, s, told or {})
+        values = {}
+        for one in (*SERIES.values(), *self.observed):
+            value = one.value(found)
+            if value is not None:
+                values[one.name] = value
+        values |= {
+            name: one for name, one in found.report.items() if name not in values
         }
-        values |= self._kept_laws(values, found)
         if not self.first:
-            self._check_entropy(values["relative_entropy"], found)
+            self._check_entropy(values["relative_entropy"], found.sums)
         self.first = self.first or values
         self.rows.append(values)
         return values
-
-    def _entropy(self, p: Array, found: RowFunctionals) -> dict[str, float]:
-        if self.reference is None or not math.isfinite(found.mass()):
-            lost = entropy = math.nan
-        elif self.inverse is None:
-            arguments = p, self.grid, self.model.noise, self.reference
-            lost = diagnostics.entropy_dissipation(*arguments)
-            entropy = diagnostics.relative_entropy(p, self.grid, self.reference)
-        else:
-            lost = found.entropy_dissipation(self.model.noise)
-            entropy = found.relative_entropy(self.ratio)
-        return {"relative_entropy": entropy, "entropy_dissipation": lost}
 
     def _check_entropy(self, entropy: float, found: RowFunctionals) -> None:
         """Warn if the start lies where p_S is too small for a logarithm."""
@@ -144,22 +208,12 @@ class Recorder:
                 stacklevel=5,
             )
 
-    def _kept_laws(
-        self, values: dict[str, float], found: RowFunctionals
-    ) -> dict[str, float]:
-        """How far the record is from what the equation allows."""
-        laws = {}
-        if self.falls:
-            entropy = values["relative_entropy"]
-            self.lowest = min(self.lowest, entropy)
-            laws["entropy_rise"] = entropy - self.lowest
-        if self.circulation is not None:
-            now = self.circulation.of(found)
-            start = self.first or {"s": values["s"], "circulation": now}
-            left = remaining(self.model.noise, values["s"] - start["s"])
-            laws["circulation"] = now
-            laws["circulation_deviation"] = now - left * start["circulation"]
-        return laws
+    def rise(self, entropy: float) -> float | None:
+        """How far H lies above its smallest value so far, where it can only fall."""
+        if not self.falls:
+            return None
+        self.lowest = min(self.lowest, entropy)
+        return entropy - self.lowest
 
     def go_on(self, series: Mapping[str, Array]) -> None:
         """Continue after the records in `series`, which were made elsewhere."""
@@ -176,7 +230,7 @@ class Recorder:
     @property
     def columns(self) -> tuple[str, ...]:
         """Names of what is recorded."""
-        return tuple(self.first) or BASIC
+        return tuple(self.first) or ALWAYS
 
     def series(self) -> dict[str, Any]:
         """The records as arrays, one entry per recorded step."""

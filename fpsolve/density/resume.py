@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
+from typing import Any
 
 from fpsolve._support.checks import check_path
 from fpsolve._support.progress import ProgressCallback
@@ -46,8 +48,8 @@ def resume(
     FileNotFoundError, FileFormatError
         If it is not a checkpoint, or damaged, or of a newer version.
     ValueError
-        If potential, curve or scheme are a user's own code, which no file holds:
-        call `solve` with the same arguments then.
+        If potential, curve, scheme or what is observed are a user's own code, which
+        no file holds: call `solve` with the same arguments then.
     CheckpointError
         If another run is writing to it, or it cannot be written.
     """
@@ -55,6 +57,7 @@ def resume(
     manifest = read_manifest(folder)
     p0, reference = read_start(folder, manifest.run)
     try:
+        _check_own(manifest.run.arguments)
         scheme = manifest.run.build_scheme()
     except ValueError as error:
         reason = str(error).rstrip(".")
@@ -76,3 +79,10 @@ def resume(
             folder, manifest.every if every is None else every, manifest.notes
         ),
     )
+
+
+def _check_own(arguments: Mapping[str, Any]) -> None:
+    """Raise ValueError if the run recorded numbers of the caller's own."""
+    if arguments.get("observe"):
+        names = ", ".join(map(repr, arguments["observe"]))
+        raise ValueError(f"`observe` must not hold functions of your own, got {names}")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -26,6 +26,7 @@ from fpsolve.errors import (
     RunInterrupted,
 )
 from fpsolve.evolution.schedule import Schedule
+from fpsolve.evolution.series import Series
 
 if TYPE_CHECKING:
     from fpsolve.density.checkpoints.keeper import CheckpointKeeper
@@ -43,12 +44,13 @@ class Run(Pass):
         scheme: Scheme,
         p0: Array,
         reference: Array | None,
+        observed: Sequence[Series],
         tolerances: Tolerances,
         arguments: dict[str, Any],
         schedule: Schedule,
         keeper: MemoryKeeper | CheckpointKeeper,
     ) -> None:
-        super().__init__(scheme, p0, reference, schedule)
+        super().__init__(scheme, p0, reference, observed, schedule)
         self.tolerances, self.keeper = tolerances, keeper
         self.p0, self.reference, self.arguments = p0, reference, arguments
         self.saves = frozenset(schedule.saves)
@@ -106,11 +108,9 @@ class Run(Pass):
     def _record(self, step: int) -> None:
         s = self.schedule.s(step)
         p = self.scheme.density(self.state)
-        extra = {"mass_correction": self.state.correction}
-        if self.state.theta is not None:
-            extra["theta"] = self.state.theta
+        told = {"mass_correction": self.state.correction, **self.state.report}
         self._check_finite(p, s)
-        values = self.recorder.record(p, s, **extra)
+        values = self.recorder.record(p, s, told)
         if step in self.saves:
             self.keeper.save(p)
         self._check(values)

@@ -21,6 +21,7 @@ from fpsolve.density.checkpoints.checkpoint import Checkpoint, as_checkpoint
 from fpsolve.density.description import RunDescription, run_arguments
 from fpsolve.density.extrapolation import extrapolated
 from fpsolve.density.keeper import MemoryKeepers
+from fpsolve.density.observed import Observe, observed_digests, observed_series
 from fpsolve.density.run import Run
 from fpsolve.density.schemes.scheme import Scheme, checked_scheme, checked_start
 from fpsolve.density.solution import Solution
@@ -55,6 +56,7 @@ def solve(
     record_every: int = 1,
     memory_limit: int | None = None,
     checkpoint: Checkpoint | str | os.PathLike[str] | None = None,
+    observe: Observe | None = None,
 ) -> Solution:
     """Density p(ξ, α, s) of equation (7) from p0, with its entropy at every step.
 
@@ -105,6 +107,9 @@ def solve(
         result is bitwise that of an uninterrupted run. Records and saved densities
         are then on the disk, and `densities` of the result are read from the folder
         when they are asked for: keep it as long as you use them. See `resume`.
+    observe : mapping of callables, optional
+        Numbers of your own: ``observe={"returning": f}`` records ``f(p, grid)`` with
+        every record, as the series `returning` of the solution.
 
     Returns
     -------
@@ -119,6 +124,8 @@ def solve(
         `MassCorrectionError` of the semi-Lagrangian scheme.
     EntropyRiseError, CirculationError
         Likewise, where a run on a belt at rest breaks a law of the equation.
+    ObservationError
+        Likewise, where a function of `observe` fails or gives no finite number.
     CheckpointMismatchError
         If the folder holds the checkpoint of another run; names every difference.
     CheckpointError
@@ -140,6 +147,7 @@ def solve(
         "circulation_tolerance": circulation_tolerance,
     }
     tolerances = Tolerances(*allowed.values())
+    observed = observed_series(observe)
     save_at = None if save_at is None else tuple(checked_stops(save_at))
     schedule = make_schedule(s_span, ds, save_at, record_every)
     scheme.model.curve.check_span(schedule.start, schedule.end)
@@ -153,14 +161,14 @@ def solve(
     arguments = run_arguments(
         s_span, ds, save_at, record_every=record_every, extrapolate=extrapolate,
         **allowed,
-    )  # fmt: skip
+    ) | observed_digests(observe, checkpoint is not None)  # fmt: skip
     with (
         threads_worth_their_wait(p0.size),
         _keepers(checkpoint, scheme, p0, reference, arguments) as keepers,
         reporting(progress) as report,
         announced_compilation(bool(progress)),
     ):
-        begin = partial(Run, scheme, p0, reference, tolerances, arguments)
+        begin = partial(Run, scheme, p0, reference, observed, tolerances, arguments)
         return _completed(begin, keepers, schedule, extrapolate, report)
 
 

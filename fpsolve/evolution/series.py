@@ -1,7 +1,9 @@
-"""What the variables of a result are: their names in words, series and errors."""
+"""Every series of a solution, once; what the variables of a result are in words."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -12,6 +14,8 @@ __all__ = [
     "DENSITY",
     "SERIES",
     "START",
+    "Series",
+    "is_extrapolated",
     "long_name",
     "read_errors",
     "read_series",
@@ -32,26 +36,73 @@ COORDINATES = {
     "alpha": "angle α in radians",
 }
 
-SERIES = {
-    "mass": "mass ∫ p dξ dα",
-    "relative_entropy": "relative entropy H(p|p_S)",
-    "entropy_dissipation": "entropy dissipation (A²/2) ∫ p (∂_α ln(p/p_S))² dξ dα",
-    "minimum": "smallest value of p",
-    "negative_mass": "mass of the negative part of the density",
-    "boundary_mass": "mass in the cells at the boundary of the box",
-    "mass_correction": "relative mass error removed",
-    "entropy_rise": "rise of H(p|p_S) above its smallest value so far",
-    "circulation": "circulation E G relative to the largest G",
-    "circulation_deviation": "deviation of the circulation from its exact law",
-    "mean_xi1": "mean E ξ₁",
-    "mean_xi2": "mean E ξ₂",
-    "variance_xi1": "variance Var ξ₁",
-    "variance_xi2": "variance Var ξ₂",
-    "covariance": "covariance Cov(ξ₁, ξ₂)",
-    "mean_cos_alpha": "mean E cos α",
-    "mean_sin_alpha": "mean E sin α",
-    "theta": "weight θ of the adjusted advection",
-}
+
+@dataclass(frozen=True)
+class Series:
+    """A number that is recorded at every step.
+
+    Attributes
+    ----------
+    name : str
+        That of the attribute of a solution and of the variable in its dataset.
+    words : str
+    value : callable
+        Takes the record of a step (`density.recorder.Record`); None where the run has
+        no such number.
+    approximates : bool
+        Whether it approximates something that does not depend on ds, so that two runs
+        are extrapolated; others describe the finer run.
+    """
+
+    name: str
+    words: str
+    value: Callable[[Any], float | None]
+    approximates: bool = True
+
+
+def _moment(name: str, words: str) -> Series:
+    return Series(name, words, lambda record: float(record.moments[name]))
+
+
+# Every series of a solution, in the order of its record.
+SERIES = {one.name: one for one in (
+    Series("s", "arclength s", lambda record: record.s, approximates=False),
+    Series("mass", "mass ∫ p dξ dα", lambda record: record.sums.mass()),
+    Series("relative_entropy", "relative entropy H(p|p_S)",
+           lambda record: record.relative_entropy),
+    Series("entropy_dissipation",
+           "entropy dissipation (A²/2) ∫ p (∂_α ln(p/p_S))² dξ dα",
+           lambda record: record.entropy_dissipation),
+    Series("minimum", "smallest value of p", lambda record: record.sums.minimum(),
+           approximates=False),
+    Series("negative_mass", "mass of the negative part of the density",
+           lambda record: record.sums.negative_mass(), approximates=False),
+    Series("boundary_mass", "mass in the cells at the boundary of the box",
+           lambda record: record.boundary_mass, approximates=False),
+    Series("mass_correction", "relative mass error removed",
+           lambda record: record.report.get("mass_correction"), approximates=False),
+    Series("theta", "weight θ of the adjusted advection",
+           lambda record: record.report.get("theta"), approximates=False),
+    _moment("mean_xi1", "mean E ξ₁"),
+    _moment("mean_xi2", "mean E ξ₂"),
+    _moment("variance_xi1", "variance Var ξ₁"),
+    _moment("variance_xi2", "variance Var ξ₂"),
+    _moment("covariance", "covariance Cov(ξ₁, ξ₂)"),
+    _moment("mean_cos_alpha", "mean E cos α"),
+    _moment("mean_sin_alpha", "mean E sin α"),
+    Series("entropy_rise", "rise of H(p|p_S) above its smallest value so far",
+           lambda record: record.entropy_rise, approximates=False),
+    Series("circulation", "circulation E G relative to the largest G",
+           lambda record: record.circulation),
+    Series("circulation_deviation", "deviation of the circulation from its exact law",
+           lambda record: record.circulation_deviation),
+)}  # fmt: skip
+
+
+def is_extrapolated(name: str) -> bool:
+    """Whether two runs are combined for a series; those of a user are, too."""
+    return name not in SERIES or SERIES[name].approximates
+
 
 _ERRORS = {"density_l1": "L¹ norm of p"}
 
@@ -65,7 +116,8 @@ def long_name(variable: str) -> str:
         Name in the dataset, for instance "mass" or "mass_error".
     """
     quantity = variable.removesuffix("_error")
-    name = _ERRORS.get(quantity) or SERIES.get(quantity, quantity)
+    known = SERIES.get(quantity)
+    name = _ERRORS.get(quantity) or (known.words if known else quantity)
     return name if quantity == variable else f"estimated error of: {name}"
 
 

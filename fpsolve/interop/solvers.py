@@ -170,9 +170,7 @@ class Stepper:
         check_correction(self.state, self.reached, self.scheme)
         check_laws(self.recorder.record(p, self.reached), self.tolerances)
         self.recorder.rows.clear()
-        self.info["mass_correction"] = self.state.correction
-        if self.state.theta is not None:
-            self.info["theta"] = self.state.theta
+        self.info |= {"mass_correction": self.state.correction, **self.state.report}
         field.data[...] = p
         self.shown = p.copy()
 

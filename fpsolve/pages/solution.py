@@ -257,13 +257,13 @@ def _laws(solution: Solution) -> list[Block]:
 
 
 def _error_table(solution: Solution) -> Table:
-    from fpsolve.evolution.series import long_name
+    from fpsolve.evolution.series import is_extrapolated, long_name
 
     errors = solution.errors or {}
     rows = [
         (_NAMES.get(name) or long_name(name), f"{float(np.max(values)):.1e}")
         for name, values in errors.items()
-        if np.size(values) and np.isfinite(values).all() and name not in ("s", "theta")
+        if np.size(values) and np.isfinite(values).all() and is_extrapolated(name)
     ]
     return Table(
         "Largest estimated error in ds over the whole run.", ("quantity", "at most"),

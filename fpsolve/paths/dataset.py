@@ -29,7 +29,7 @@ PARTS = (
     ("tau", slice(2, 4), "tangent τ = (cos α, sin α)"),
     ("turns", 4, "full turns of the angle α"),
 )
-_LONG_NAMES = {**SERIES, "mean_square": "mean E ‖ξ‖²"}
+_MEAN_SQUARE = "mean E ‖ξ‖²"
 
 
 def to_xarray(paths: Any) -> xr.Dataset:
@@ -97,7 +97,8 @@ def _moments(paths: Any) -> dict[str, Any]:
         )
     }
     for name, values in moments.values.items():
-        long_name = _LONG_NAMES[name]
+        known = SERIES.get(name)
+        long_name = known.words if known else _MEAN_SQUARE
         error = f"{name}_standard_error"
         variables[name] = ("s", values, labels(long_name))
         variables[error] = (

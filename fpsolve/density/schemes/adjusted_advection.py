@@ -135,7 +135,7 @@ class AdjustedAdvection:
         other = self.form.mass(spare)
         possible = math.isfinite(other) and mass != other
         theta = (target - other) / (mass - other) if possible else math.inf
-        state.theta = theta
+        state.report["theta"] = theta
         if not 0.0 <= theta <= 1.0:
             raise MassCorrectionError(s, theta, state.n_steps)
         blend(state.work, spare, theta, state.work)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -34,9 +34,9 @@ class State:
         Mass the corrections restore: that of the initial density.
     correction : float
         Relative mass error removed in the last `advance`, signed.
-    theta : float or None
-        Smallest weight of the adjusted advection in the last `advance`; None for a
-        scheme without one.
+    report : dict of float
+        What the scheme tells of the last `advance` besides, each a series of the
+        solution: `theta`, the smallest weight of the adjusted advection.
     n_steps : int
         Steps made since the start.
     scratch : object
@@ -48,9 +48,9 @@ class State:
     work: Array
     target_mass: float
     correction: float = 0.0
-    theta: float | None = None
     n_steps: int = 0
     scratch: Any = None
+    report: dict[str, float] = field(default_factory=dict)
 
     def swap(self) -> None:
         """Exchange unknown and scratch."""

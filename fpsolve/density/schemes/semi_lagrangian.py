@@ -114,7 +114,7 @@ class SemiLagrangian:
     def start(self, p0: Array) -> State:
         """State of a run that begins at p0."""
         state = self.form.start(p0)
-        state.theta = 1.0
+        state.report["theta"] = 1.0
         return state
 
     def density(self, state: State) -> Array:
@@ -127,11 +127,12 @@ class SemiLagrangian:
         """
         corrections, weights = [], []
         for step in range(n_steps):
-            state.theta = 1.0
+            state.report["theta"] = 1.0
             self._step(state, s + step * ds, ds)
             corrections.append(state.correction)
-            weights.append(state.theta)
-        state.correction, state.theta = max(corrections, key=abs), min(weights)
+            weights.append(state.report["theta"])
+        state.correction = max(corrections, key=abs)
+        state.report["theta"] = min(weights)
 
     def _step(self, state: State, s: float, ds: float) -> None:
         if self.splitting == "lie":

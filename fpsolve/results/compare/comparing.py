@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve.density.extrapolation import NOT_EXTRAPOLATED
+from fpsolve.evolution.series import is_extrapolated
 from fpsolve.results.compare.alignment import aligned, on_arclength
 from fpsolve.results.compare.comparison import Comparison
 from fpsolve.results.compare.densities import density_distance, on_common_grid
@@ -112,7 +112,7 @@ def error_of(name: str, a: xr.Dataset, b: xr.Dataset) -> tuple[Array | None, boo
 
     What describes the finer of two runs, and is no approximation, has none.
     """
-    if name in NOT_EXTRAPOLATED:
+    if not is_extrapolated(name):
         return None, False
     for ending, statistical in ((STANDARD, True), (ESTIMATED, False)):
         key = f"{name}{ending}"

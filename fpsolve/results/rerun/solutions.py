@@ -29,6 +29,8 @@ def repeat_solution(solution: Solution, overrides: dict[str, Any]) -> Solution:
     if run is None or p0 is None:
         raise unrecorded("how the run began", "`fpsolve.solve`")
     check_run(solution, run, overrides)
+    if run.get("observe") and "observe" not in given:
+        raise own_code("observe", ", ".join(run["observe"]))
     arguments = {**run, "reference": solution.reference, **given}
     new = solve(_scheme(solution, parts), p0, **arguments)
     if overrides.keys() - {"progress", "model"}:
