@@ -6,14 +6,14 @@ import hashlib
 import json
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import asdict, dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fpsolve._support.digests import SAMPLED, digest_of, plain
-from fpsolve.density.schemes.drift_kick import DriftKick
-from fpsolve.density.schemes.semi_lagrangian import SemiLagrangian
+from fpsolve.density.schemes.known import SCHEMES
+from fpsolve.density.schemes.scheme import Scheme
 from fpsolve.evolution.schedule import Schedule, make_schedule
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.model.curves.samples import digest_of_curve
@@ -21,14 +21,10 @@ from fpsolve.model.identity.digests import digest_or_none
 from fpsolve.model.laydown import LayDownModel
 from fpsolve.model.potentials.samples import digest_of_potential
 
-if TYPE_CHECKING:
-    from fpsolve.density.schemes.scheme import Scheme
-
 __all__ = ["CODE", "RunDescription", "describe_scheme", "run_arguments"]
 
 Array = NDArray[np.float64]
 
-_SCHEMES: tuple[type[Any], ...] = (DriftKick, SemiLagrangian)
 # Keys of digests, and what these are digests of.
 CODE, _STEP = "code", "first_step"
 _DIGESTS = {SAMPLED: "values", CODE: "code", _STEP: "values"}
@@ -147,7 +143,7 @@ class RunDescription:
         options = dict(self.scheme)
         name, home = options.pop("kind"), options.pop("class")
         del options["order"]
-        for kind in _SCHEMES:
+        for kind in SCHEMES.values():
             if home == f"{kind.__module__}.{kind.__qualname__}":
                 model = LayDownModel.from_dict(self.model)
                 built: Scheme = kind(
@@ -195,7 +191,7 @@ def _describe_scheme(scheme: Scheme, p0: Array, schedule: Schedule) -> dict[str,
         "order": scheme.order,
         **scheme.options,
     }
-    if kind in _SCHEMES:
+    if kind in SCHEMES.values():
         return description
     own = {CODE: _code_of(kind), _STEP: _first_step(scheme, p0, schedule)}
     return {**description, **own}
@@ -211,7 +207,7 @@ def describe_scheme(scheme: Scheme) -> dict[str, Any]:
         "name": scheme.name,
         "order": scheme.order,
         "options": dict(scheme.options),
-        **({} if kind in _SCHEMES else {CODE: _code_of(kind)}),
+        **({} if kind in SCHEMES.values() else {CODE: _code_of(kind)}),
     }
 
 

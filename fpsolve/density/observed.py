@@ -49,9 +49,7 @@ def observed_series(observe: Observe | None) -> tuple[Series, ...]:
     return tuple(_series(name, function) for name, function in observe.items())
 
 
-def observed_digests(
-    observe: Observe | None, kept: bool
-) -> dict[str, Any]:
+def observed_digests(observe: Observe | None, kept: bool) -> dict[str, Any]:
     """What a description of the run says of `observe`: a digest of each function.
 
     Parameters

@@ -6,14 +6,12 @@ from collections.abc import Mapping
 from typing import Any
 
 from fpsolve.density.description import CODE
-from fpsolve.density.schemes import drift_kick, semi_lagrangian
+from fpsolve.density.schemes.known import SCHEMES
 from fpsolve.density.schemes.scheme import Scheme
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.model.laydown import LayDownModel
 
 __all__ = ["scheme_from_dict"]
-
-_MAKERS: dict[str, Any] = {"drift_kick": drift_kick, "semi_lagrangian": semi_lagrangian}
 
 
 def scheme_from_dict(
@@ -32,8 +30,8 @@ def scheme_from_dict(
             f"`scheme` must be one of fpsolve, got a class of your own that calls "
             f"itself {name!r}."
         )
-    if name not in _MAKERS:
-        known = ", ".join(repr(one) for one in _MAKERS)
+    if name not in SCHEMES:
+        known = ", ".join(repr(one) for one in SCHEMES)
         raise ValueError(f"`scheme` must be one of {known}, got {name!r}.")
-    scheme: Scheme = _MAKERS[name](model, grid, **description["options"])
+    scheme: Scheme = SCHEMES[name](model, grid, **description["options"])
     return scheme
