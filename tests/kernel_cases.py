@@ -108,7 +108,10 @@ class Arguments:
             "value_cubic": [(p, *at), (p, 0.0, 1.0, 2.0)],
             "line_quintic": [(row[0], six, six_weights)],
             "value_quintic": [(p, *at), (p, 0.0, 1.0, 2.0)],
-            "clipped": [(p, *at, 0.5), (p, *at, 9.0), (p, *at, -9.0)],
+            "nodes_around": [(2.4,), (3.0,), (3.0 - 1e-12,), (-0.5,)],
+            "clipped": [
+                (p, *at, 0.5), (p, *at, 9.0), (p, *at, -9.0), (p, 2.0, 1.0, 2.5, 9.0),
+            ],
             "value_at": [(p, *at, 4, False), (p, *at, 6, True)],
             "interpolate_at_feet": [
                 (p, self.feet, none, 4, False, self.out()),

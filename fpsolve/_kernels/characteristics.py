@@ -9,6 +9,9 @@ from numba import prange
 
 from fpsolve._kernels.compiling import njit
 
+# Part of a cell that is rounding of a foot.
+ON_A_NODE = 1e-9
+
 
 @njit(cache=True, error_model="numpy")
 def following(index, n):
@@ -155,20 +158,38 @@ def value_quintic(h, x, y, z):
 
 
 @njit(cache=True, error_model="numpy")
+def nodes_around(x):
+    """First node of those around x and their number: 2, or 1 if x is a node itself.
+
+    A foot that rounding puts on one side of a node is not to be told from one on the
+    other, or the reflection of a run would be limited by other values.
+    """
+    first = np.floor(x)
+    if x - first <= ON_A_NODE:
+        return first, 1
+    if first + 1.0 - x <= ON_A_NODE:
+        return first + 1.0, 1
+    return first, 2
+
+
+@njit(cache=True, error_model="numpy")
 def clipped(h, x, y, z, value):
     """value limited to the range of the eight nodes around (x, y, z).
 
-    The quasi-monotone limiter of Bermejo and Staniforth.
+    The quasi-monotone limiter of Bermejo and Staniforth; four, two or one of the nodes
+    if the point lies on a face, an edge or a node.
     """
     n1, n2, n3 = h.shape
-    i = wrapped(np.floor(x), n1)
+    (first1, some1), (first2, some2) = nodes_around(x), nodes_around(y)
+    first3, some3 = nodes_around(z)
+    i = wrapped(first1, n1)
     lowest = np.inf
     highest = -np.inf
-    for _ in range(2):
-        j = wrapped(np.floor(y), n2)
-        for _ in range(2):
-            k = wrapped(np.floor(z), n3)
-            for _ in range(2):
+    for _ in range(some1):
+        j = wrapped(first2, n2)
+        for _ in range(some2):
+            k = wrapped(first3, n3)
+            for _ in range(some3):
                 lowest = min(lowest, h[i, j, k])
                 highest = max(highest, h[i, j, k])
                 k = following(k, n3)

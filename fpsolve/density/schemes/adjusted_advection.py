@@ -50,7 +50,8 @@ class AdjustedAdvection:
     p = e^{−B} h that is taken at the moved feet: a correction is then possible for a
     constant h too, which a moving belt needs. The correction changes p by no more
     than the mass error it repairs, spread over the cells: it does not lower the
-    order of the scheme.
+    order of the scheme. ds² has a unit: ξ and s are meant in throwing ranges, and in
+    others the same mass is restored by feet moved by other parts of a cell.
 
     Parameters
     ----------
