@@ -165,7 +165,7 @@ def square(x, y):
             r"must work elementwise, got shape \(7, 8\) for points of shape \(8, 8\)",
         ),
         (
-            lambda x, y: np.array([x, y]),
+            lambda x, y: 2 * np.array([x, y]),
             ValueError,
             r"elementwise on arrays that broadcast, got ValueError \(.*\) for shapes "
             r"\(8, 1\) and \(1, 8\)",

@@ -24,6 +24,8 @@ Array = NDArray[np.float64]
 
 # A share of H that matters: a warning tells where B beyond 690 is not counted.
 _UNCOUNTED = 1e-3
+# A mass of p_S on the grid beyond one that is told.
+_TOO_MUCH = 0.01
 # What every run records; a run that ends before its first record has these, empty.
 ALWAYS = (
     "s", "mass", "relative_entropy", "entropy_dissipation", "minimum", "negative_mass",
@@ -125,7 +127,8 @@ class Recorder:
     Warns
     -----
     UserWarning
-        If the start has mass where p_S is below 1e-300, which H does not count further.
+        If the start has mass where p_S is below 1e-300, which H does not count
+        further, or if p_S weighs more than 1.01 on cells that do not resolve it.
     """
 
     def __init__(
@@ -158,6 +161,7 @@ class Recorder:
             self.inverse = inverse_of(reference, self.ratio)
         if self.inverse is not None and given is None:
             self.uncounted = uncounted(model.potential, grid, self.ratio)
+            self._check_mass(total)
         # The first record stays when a caller takes `rows` elsewhere.
         self.first: dict[str, float] = {}
         self.rows: list[dict[str, float]] = []
@@ -188,6 +192,18 @@ class Recorder:
         self.first = self.first or values
         self.rows.append(values)
         return values
+
+    @staticmethod
+    def _check_mass(total: float) -> None:
+        """Warn if p_S weighs more than one on these cells: H is then below zero."""
+        if total > 1.0 + _TOO_MUCH:
+            warnings.warn(
+                f"`grid` must have cells that resolve p_S, got a mass of {total:.4g} "
+                "for it: its wells are narrower than a few cells. `relative_entropy` "
+                f"falls to {-math.log(total):.3g} here instead of zero "
+                "(`entropy_floor`); refine the cells.",
+                stacklevel=5,
+            )
 
     def _check_entropy(self, entropy: float, found: RowFunctionals) -> None:
         """Warn if the start lies where p_S is too small for a logarithm."""

@@ -21,10 +21,12 @@ from fpsolve._support.checks import (
 from fpsolve.model.curves.belts import FixedBelt
 from fpsolve.model.curves.curve import Curve
 from fpsolve.model.curves.dictionaries import curve_from_dict, curve_to_dict
+from fpsolve.model.potentials.claims import check_gradient
 from fpsolve.model.potentials.dictionaries import (
     potential_from_dict,
     potential_to_dict,
 )
+from fpsolve.model.potentials.evidence import check_wells_met
 from fpsolve.model.potentials.potential import Potential
 
 __all__ = ["LayDownModel", "check_model"]
@@ -54,7 +56,8 @@ class LayDownModel:
     Raises
     ------
     ValueError
-        If the noise is negative, not finite, or so extreme that its powers are.
+        If the noise is negative, not finite, or so extreme that its powers are, or if
+        a user's class of potentials has a gradient that is not that of its value.
     TypeError
         If an argument is of another kind.
 
@@ -82,6 +85,8 @@ class LayDownModel:
         if noise:
             noise = check_noise("noise", noise)
         object.__setattr__(self, "noise", noise)
+        if not self.potential.of_fpsolve:
+            check_gradient(self.potential.value, self.potential.gradient)
 
     @property
     def diffusivity(self) -> float:
@@ -131,7 +136,8 @@ class LayDownModel:
         Raises
         ------
         ValueError
-            If exp(-B) is not integrable.
+            If exp(-B) is not integrable, or B has a well at one of the points that Z
+            does not count.
 
         References
         ----------
@@ -144,7 +150,9 @@ class LayDownModel:
             )
         normalisation = self.potential.normalisation
         # Both parts of Z at once would overflow where B is far below zero.
-        weight = np.exp(normalisation.lowest - self.potential.value(xi1, xi2))
+        value = self.potential.value(xi1, xi2)
+        check_wells_met(self.potential, xi1, xi2, value)
+        weight = np.exp(normalisation.lowest - value)
         return np.asarray(weight / (2 * math.pi * normalisation.integral))
 
     @property

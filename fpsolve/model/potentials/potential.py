@@ -12,10 +12,15 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from fpsolve._support.arrays import check_numbers
+from fpsolve._support.checks import check_positive
+from fpsolve.model.potentials.claims import check_isotropy
 from fpsolve.model.potentials.partition import Normalisation, normalisation_of
+from fpsolve.model.potentials.wells import check_places
 
 __all__ = ["Potential", "RadialPotential"]
 
+# Relative error that the quadrature may have where B is rough, and a user's digits.
+_AGREES = 1e-6
 # e^{±700} is about the range of floats.
 _SMALLEST_LOGARITHM, _LARGEST_LOGARITHM = -700.0, 700.0
 # What must agree with the closed forms of a class: of Z, spectra, samples and limits.
@@ -28,6 +33,11 @@ def _has_closed_forms(kind: type) -> bool:
     return own and "partition_function" in vars(kind)
 
 
+def _defines_z(kind: type) -> type:
+    """The class of which Z is: itself or a parent."""
+    return next(one for one in kind.__mro__ if "partition_function" in vars(one))
+
+
 class Potential(ABC):
     """A buckling potential B(ξ) on the plane.
 
@@ -37,9 +47,10 @@ class Potential(ABC):
 
     A new potential is a frozen dataclass that defines `value`, `gradient`, `formula`
     and `latex`, and `kind` if it is to be stored; `partition_function` then comes from
-    quadrature, unless it is defined too. A class that is derived from one with closed
-    forms, such as `QuadraticPotential`, and has other values raises TypeError when it
-    is defined.
+    quadrature, unless it is defined too. Quadrature finds wells that are wide enough,
+    or that B leads to; `well_places` tells it of others. A class that is derived from
+    one with closed forms, such as `QuadraticPotential`, and has other values raises
+    TypeError when it is defined.
 
     References
     ----------
@@ -85,6 +96,17 @@ class Potential(ABC):
         """Whether B depends on ‖ξ‖ only."""
         return False
 
+    @property
+    def well_places(self) -> ArrayLike:
+        """Places [(ξ1, ξ2), ...] of wells that are too narrow to be found; none.
+
+        To be defined where a well in flat surroundings is narrower than about a
+        thirtieth of its distance from the origin: Z is then too small without it. The
+        place may miss its lowest point by a few widths, as long as B is below its
+        surroundings there.
+        """
+        return ()
+
     def radial_value(self, r: ArrayLike) -> NDArray[np.float64]:
         """B(r) of an isotropic potential, r >= 0; ValueError when it is not one."""
         self._require_isotropic()
@@ -127,27 +149,69 @@ class Potential(ABC):
         Raises
         ------
         ValueError
-            If B is NaN somewhere, or too rough for the quadrature.
+            If B is NaN somewhere, or too rough for the quadrature, or if a class that
+            is not one of fpsolve defines a `partition_function` that is another, or
+            says that it is isotropic and is not.
         """
-        if self._has_closed_form:
-            return Normalisation(0.0, self.partition_function)
-        return self.resolved_normalisation
+        if self.has_closed_form:
+            found = Normalisation(0.0, self.partition_function)
+            if not _defines_z(type(self)).__module__.startswith("fpsolve."):
+                self._check_own_integral(found.integral)
+        else:
+            found = self.resolved_normalisation
+        if self.isotropic and not self.of_fpsolve:
+            finite = math.isfinite(found.integral)
+            check_isotropy(self.value, math.sqrt(found.integral) if finite else 1.0)
+        return found
+
+    def _check_own_integral(self, given: float) -> None:
+        """Raise ValueError unless Z as defined by a user's class is that of its B."""
+        if given != math.inf:
+            check_positive("partition_function", given)
+        try:
+            found = self._by_quadrature(given)
+        except ValueError:
+            # Too rough for the quadrature, which has no opinion then.
+            return
+        away = abs(math.log(given) - found.log_value)
+        if math.isfinite(found.integral) and not away <= _AGREES + found.error:
+            raise ValueError(
+                f"`partition_function` must be the integral of exp(-B), got {given:g} "
+                f"where quadrature gives exp({found.log_value:.10g}); leave it to the "
+                "quadrature, or define `well_places` if that misses a narrow well."
+            )
 
     @cached_property
     def resolved_normalisation(self) -> Normalisation:
         """The same by quadrature, with the cells that resolve e^{-B}."""
-        if not self._has_closed_form or not self.normalisable:
-            return normalisation_of(self.value, self.isotropic)
+        if not self.has_closed_form or not self.normalisable:
+            return self._by_quadrature(math.inf)
+        return self._by_quadrature(self.normalisation.integral)
+
+    def _by_quadrature(self, area: float) -> Normalisation:
+        """Z and its cells, in units in which the known size of the pattern is one."""
+        if not 0 < area < math.inf:
+            return normalisation_of(self.value, self.isotropic, self._places())
         # The size of the pattern is known, however small or large.
-        length = math.sqrt(self.normalisation.integral / (2 * math.pi))
+        length = math.sqrt(area / (2 * math.pi))
 
         def value(xi1: ArrayLike, xi2: ArrayLike) -> NDArray[np.float64]:
             return self.value(np.multiply(length, xi1), np.multiply(length, xi2))
 
-        return normalisation_of(value, self.isotropic).scaled(length)
+        places = self._places() / length
+        return normalisation_of(value, self.isotropic, places).scaled(length)
+
+    def _places(self) -> NDArray[np.float64]:
+        return check_places("well_places", self.well_places)
 
     @property
-    def _has_closed_form(self) -> bool:
+    def of_fpsolve(self) -> bool:
+        """Whether the class is one of fpsolve, not a user's."""
+        return type(self).__module__.startswith("fpsolve.")
+
+    @property
+    def has_closed_form(self) -> bool:
+        """Whether the class defines Z, which is then not looked for."""
         return type(self).partition_function is not Potential.partition_function
 
     @property

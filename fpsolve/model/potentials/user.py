@@ -9,14 +9,17 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from fpsolve._support.arrays import check_numbers
+from fpsolve._support.arrays import check_finite_numbers, check_numbers
 from fpsolve.model.potentials.potential import Potential, RadialPotential
 from fpsolve.model.potentials.probes import (
     check_plane_functions,
     check_radial_functions,
 )
+from fpsolve.model.potentials.wells import check_places
 
 __all__ = ["CallablePotential", "IsotropicPotential"]
+
+Places = tuple[tuple[float, float], ...]
 
 
 @dataclass(frozen=True, init=False, repr=False)
@@ -31,6 +34,9 @@ class IsotropicPotential(RadialPotential):
     ----------
     value, derivative : callable
         B(r) and B'(r) for an array of r >= 0, elementwise.
+    well_radii : sequence of float, optional
+        Radii of rings in which B is low and which are narrower than about a
+        five-hundredth of their radius; see `Potential.well_places`.
 
     Raises
     ------
@@ -43,6 +49,7 @@ class IsotropicPotential(RadialPotential):
 
     _value: Callable[[Any], ArrayLike]
     _derivative: Callable[[Any], ArrayLike]
+    _well_places: Places
 
     kind: ClassVar[str] = "callable"
 
@@ -50,10 +57,20 @@ class IsotropicPotential(RadialPotential):
         self,
         value: Callable[[Any], ArrayLike],
         derivative: Callable[[Any], ArrayLike],
+        *,
+        well_radii: ArrayLike = (),
     ) -> None:
         check_radial_functions(value, derivative)
+        radii = check_finite_numbers("well_radii", well_radii).ravel()
         object.__setattr__(self, "_value", value)
         object.__setattr__(self, "_derivative", derivative)
+        places = np.stack([radii, np.zeros_like(radii)], axis=1)
+        object.__setattr__(self, "_well_places", _pairs("well_radii", places))
+
+    @property
+    def well_places(self) -> Places:
+        """(r, 0) for every one of `well_radii`."""
+        return self._well_places
 
     def radial_value(self, r: ArrayLike) -> NDArray[np.float64]:
         """B(r)."""
@@ -79,6 +96,8 @@ class IsotropicPotential(RadialPotential):
 
     def __repr__(self) -> str:
         functions = f"value={_name(self._value)}, derivative={_name(self._derivative)}"
+        radii = [radius for radius, _ in self._well_places]
+        functions += f", well_radii={radii}" if radii else ""
         return f"IsotropicPotential({functions})"
 
 
@@ -95,6 +114,9 @@ class CallablePotential(Potential):
         ``value(xi1, xi2)`` gives B, elementwise on arrays that broadcast.
     gradient : callable
         ``gradient(xi1, xi2)`` gives the pair (∂B/∂ξ1, ∂B/∂ξ2), likewise.
+    well_places : sequence of pairs, optional
+        (ξ1, ξ2) in wells that are narrower than about a thirtieth of their distance
+        from the origin; see `Potential.well_places`.
 
     Raises
     ------
@@ -107,6 +129,7 @@ class CallablePotential(Potential):
 
     _value: Callable[[Any, Any], ArrayLike]
     _gradient: Callable[[Any, Any], tuple[ArrayLike, ArrayLike]]
+    _well_places: Places
 
     kind: ClassVar[str] = "callable"
 
@@ -114,10 +137,18 @@ class CallablePotential(Potential):
         self,
         value: Callable[[Any, Any], ArrayLike],
         gradient: Callable[[Any, Any], tuple[ArrayLike, ArrayLike]],
+        *,
+        well_places: ArrayLike = (),
     ) -> None:
         check_plane_functions(value, gradient)
         object.__setattr__(self, "_value", value)
         object.__setattr__(self, "_gradient", gradient)
+        object.__setattr__(self, "_well_places", _pairs("well_places", well_places))
+
+    @property
+    def well_places(self) -> Places:
+        """Where wells are said to be."""
+        return self._well_places
 
     def value(self, xi1: ArrayLike, xi2: ArrayLike) -> NDArray[np.float64]:
         """B(ξ1, ξ2), float64, in the broadcast shape of the arguments."""
@@ -148,11 +179,17 @@ class CallablePotential(Potential):
 
     def __repr__(self) -> str:
         functions = f"value={_name(self._value)}, gradient={_name(self._gradient)}"
+        places = list(self._well_places)
+        functions += f", well_places={places}" if places else ""
         return f"CallablePotential({functions})"
 
 
 def _coordinates(xi1: ArrayLike, xi2: ArrayLike) -> tuple[NDArray[np.float64], ...]:
     return check_numbers("xi1", xi1), check_numbers("xi2", xi2)
+
+
+def _pairs(name: str, places: ArrayLike) -> Places:
+    return tuple((float(xi1), float(xi2)) for xi1, xi2 in check_places(name, places))
 
 
 def _array(values: ArrayLike) -> NDArray[np.float64]:

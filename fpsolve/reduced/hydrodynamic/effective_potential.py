@@ -12,11 +12,13 @@ from numpy.typing import ArrayLike, NDArray
 from fpsolve.grids.plane import PlaneGrid
 from fpsolve.model.laydown import LayDownModel
 from fpsolve.model.potentials.at_points import value_at
+from fpsolve.model.potentials.evidence import check_wells_met
 from fpsolve.model.potentials.linear import LinearPotential
 from fpsolve.model.potentials.partition import normalisation_of
 from fpsolve.model.potentials.potential import Potential
 from fpsolve.model.potentials.power import PowerPotential
 from fpsolve.model.potentials.quadratic import QuadraticPotential
+from fpsolve.model.potentials.wells import check_places
 
 __all__ = ["EffectivePotential", "check_limit"]
 
@@ -53,7 +55,14 @@ class EffectivePotential:
         return slope1 - self.pull, slope2
 
     def density(self, xi1: ArrayLike, xi2: ArrayLike) -> Array:
-        """exp(−Φ)/∫exp(−Φ), the stationary density of the limit."""
+        """exp(−Φ)/∫exp(−Φ), the stationary density of the limit.
+
+        Raises
+        ------
+        ValueError
+            If B has a well at one of the points that ∫exp(−B) does not count.
+        """
+        check_wells_met(self.potential, xi1, xi2)
         return np.asarray(np.exp(-self.value(xi1, xi2) - self.log_normalisation))
 
     @property
@@ -76,7 +85,8 @@ class EffectivePotential:
         slope = slope_of(self.potential)
         if slope is not None:
             return _log_normalisation_of_linear(slope, self.pull)
-        return normalisation_of(self.value).log_value
+        places = check_places("well_places", self.potential.well_places)
+        return normalisation_of(self.value, well_places=places).log_value
 
 
 def slope_of(potential: Potential) -> float | None:
