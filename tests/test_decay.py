@@ -6,11 +6,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 from problems import DecayingCirculation
 
+from fpsolve import initial
 from fpsolve.density.schemes import drift_kick
 from fpsolve.density.solve import solve
-from fpsolve.evolution.decay import fit_decay
+from fpsolve.evolution.decay import fit_decay, hidden_error
 from fpsolve.grids.phase_space import PhaseSpaceGrid
-from fpsolve.model.potentials import QuadraticPotential
+from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.potentials import LinearPotential, QuadraticPotential
 
 S = np.linspace(0.0, 10.0, 101)
 
@@ -148,3 +150,41 @@ def test_the_entropy_of_the_exact_circulation_decays_at_its_rate(noise):
     # ds² of the splitting.
     assert found.rate == pytest.approx(noise**2, rel=1e-2)
     assert found.standard_error < 1e-2
+
+
+# Twice `fp.spectral_gap(LayDownModel(LinearPotential(), 1.0))`, to three digits.
+RATE_OF_LINEAR = 0.436
+
+
+@pytest.mark.parametrize(
+    "options", [{}, {"positive": True}, {"balanced": True}], ids=str
+)
+def test_a_rate_that_is_still_falling_is_covered_wherever_a_run_ends(options):
+    # The modes of |ξ| are a crowd: the slope of ln H rises to 0.74, stays there until
+    # H has fallen by e⁻⁵, and then takes until s = 40 to come down to 0.5. On this
+    # grid a plain run levels off before, so that a line sees 0.73 ± 0.14 only.
+    grid = PhaseSpaceGrid(15.4, (64, 64, 16))
+    model = LayDownModel(LinearPotential(), 1.0)
+    start = initial.gaussian(grid, (0.6, 0.0), 0.2, np.pi / 2, 4.0)
+    solution = solve(
+        drift_kick(model, grid, **options), start, (0.0, 15.0), 0.3,
+        negative_tolerance=1.0,
+    )  # fmt: skip
+    entropy = solution.relative_entropy - solution.entropy_floor
+    whole = solution.entropy_rate()
+    ended = [
+        fit_decay(solution.s[:n], entropy[:n], step_error=whole.step_error / whole.rate)
+        for n in (20, 25, 30, 40, 45)
+    ]
+    for found in (whole, *ended):
+        assert abs(found.rate - RATE_OF_LINEAR) <= 2 * found.standard_error
+
+
+def test_nothing_is_hidden_beside_one_exponential_and_at_most_the_inverse_length():
+    assert hidden_error(S, -2.0 * S, (2.0, 8.0), 2.0) < 1e-12
+    # Slope 1 before s = 4 and 2 after it: a change of 1, doubled, is above 1/4.
+    bent = np.where(S < 4.0, -S, 4.0 - 2.0 * S)
+    assert hidden_error(S, bent, (4.0, 8.0), 2.0) == pytest.approx(0.25)
+    # And 1.95 before: 0.1 is below.
+    little = np.where(S < 4.0, -1.95 * S, 0.2 - 2.0 * S)
+    assert hidden_error(S, little, (4.0, 8.0), 2.0) == pytest.approx(0.1)

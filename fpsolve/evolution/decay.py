@@ -20,12 +20,17 @@ Array = NDArray[np.float64]
 # Below this a relative entropy on a grid is rounding noise.
 NOISE_LEVEL = 1e-14
 FEWEST = 5
+# In the stretch before a window.
+FEWEST_BEFORE = 3
 # A series has levelled off if its last quarter falls this much slower than another, and
 # then only what lies this far above its last value is decay.
 LEVEL, CLEAR = 0.2, 100.0
 # An error of ln(values) at the end of a window changes a slope by this share of error
 # over length, at most: the weight of the last third in a fit by least squares.
 LEVER = 1.5
+# A rate that has changed by δ from the stretch before a window changes by so many δ yet
+# if every further change is two thirds of the last.
+TO_COME = 2.0
 # A power of s in front is believed if it leaves this share of the scatter.
 BETTER = 0.5
 # Where the error exceeds this share of the rate, the rate is not resolved.
@@ -133,13 +138,14 @@ def fit_decay(
     distance = max(distance, continuum_distance(places, logarithms, rate))
     scatter = math.sqrt(covariance[0, 0])
     shape = math.hypot(scatter, max(bend(places, logarithms) / 2, distance))
+    hidden = hidden_error(s[usable], np.log(values[usable]), (start, stop), rate)
     floor = level_error(places, values[chosen], level)
     step = abs(step_error * rate)
     if errors is not None:
         step = math.hypot(step, slope_error(places, values[chosen], errors[chosen]))
     found = DecayRate(
         rate=rate,
-        standard_error=math.hypot(shape, floor, step),
+        standard_error=math.hypot(shape, hidden, floor, step),
         amplitude=float(np.exp(line[1])),
         window=(start, stop),
         step_error=step,
@@ -181,6 +187,27 @@ def continuum_distance(places: Array, logarithms: Array, rate: float) -> float:
     line = np.polyval(np.polyfit(places, logarithms, 1), places)
     fits = power > 0.0 and left < BETTER * np.std(logarithms - line)
     return abs(float(slope) - rate) if fits else 0.0
+
+
+def hidden_error(
+    s: Array, logarithms: Array, window: tuple[float, float], rate: float
+) -> float:
+    """What a slower term may change that a window of length T does not tell apart.
+
+    The logarithm of a sum of exponentials that differ by less than 1/T is all but
+    straight there. That there is more than one is seen from the rate before, over
+    half the length; of one alone the estimate is zero, at most it is 1/T.
+    """
+    start, stop = window
+    length = stop - start
+    before = (s >= start - length / 2) & (s <= start)
+    if np.count_nonzero(before) < FEWEST_BEFORE:
+        # The window is the beginning of the series.
+        before = (s >= start) & (s <= start + length / 2)
+    if np.count_nonzero(before) < FEWEST_BEFORE:
+        return 1.0 / length
+    slope = float(np.polyfit(s[before], logarithms[before], 1)[0])
+    return min(TO_COME * abs(slope + rate), 1.0 / length)
 
 
 def level_error(places: Array, values: Array, level: float) -> float:
