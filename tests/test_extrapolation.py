@@ -6,7 +6,6 @@ from orders import assert_order, measure_order
 from problems import DecayingCirculation
 
 from fpsolve import initial
-from fpsolve.density.extrapolation import largest_nearby
 from fpsolve.density.schemes import drift_kick, semi_lagrangian
 from fpsolve.density.solve import solve
 from fpsolve.grids.diagnostics import l1_distance, mass, moments, relative_entropy
@@ -14,6 +13,7 @@ from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.model.curves import RotatingNozzle
 from fpsolve.model.laydown import LayDownModel
 from fpsolve.model.potentials import QuadraticPotential
+from fpsolve.evolution.richardson import largest_nearby
 
 MODEL = LayDownModel(QuadraticPotential(), 1.0)
 GRID = PhaseSpaceGrid(6.0, (20, 20, 16))

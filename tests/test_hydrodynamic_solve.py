@@ -83,11 +83,31 @@ def test_estimates_of_extrapolated_runs_bound_the_errors():
     }
     run = limit.solve(EXACT.density, (0.0, 2.0), 1 / 8, **arguments)
     best = limit.solve(EXACT.density, (0.0, 2.0), 1 / 128, **arguments)
-    for name in ("relative_entropy", "entropy_dissipation", "mean_xi1", "mean_xi2"):
-        last = abs(run.series[name][-1] - best.series[name][-1])
-        assert 0 < last < run.errors[name][-1]
+    # Every series but s, the mass, which is kept, and the minimum, of the finer run.
+    assert run.errors.keys() - {"density_l1"} == run.series.keys() - {
+        "s", "mass", "minimum",
+    }  # fmt: skip
+    for name, estimate in run.errors.items():
+        if name in run.series:
+            last = abs(run.series[name][-1] - best.series[name][-1])
+            assert 0 < last < estimate[-1], name
     distance = l1(run.densities[-1], best.densities[-1], GRID)
     assert 0 < distance < run.errors["density_l1"][-1]
+
+
+@pytest.mark.parametrize("mass", [0.01, 100.0])
+def test_estimates_of_means_are_those_of_a_density_of_any_mass(mass):
+    limit = HydrodynamicLimit(MODEL)
+    start = GRID.evaluate(EXACT.density)
+    one, other = (
+        limit.solve(P0, (0.0, 0.5), 1 / 4, grid=GRID, extrapolate=True)
+        for P0 in (start, mass * start)
+    )
+    for name in ("mean_xi1", "mean_xi2", "variance_xi1", "covariance", "boundary_mass"):
+        # Rounding of sums over the cells.
+        np.testing.assert_allclose(
+            other.errors[name], one.errors[name], rtol=1e-9, atol=1e-12
+        )
 
 
 def test_series_tend_to_the_exact_moments_and_entropy_with_order_two():

@@ -1,5 +1,7 @@
 """dm/ds = Q m: mass, positivity, entropy and orders of the implicit steps."""
 
+import re
+
 import numpy as np
 import pytest
 from orders import assert_order, measure_order
@@ -93,6 +95,63 @@ def test_the_estimates_bound_the_errors_of_every_series(problem):
     series = {**found.averages, **vars(found)}
     for name, value in expected.items():
         assert 0 < abs(series[name][-1] - value) < estimates[name][-1]
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("turn", [0.02, 0.1, 0.5, 1.9])
+@pytest.mark.parametrize("begun", ["point", "anywhere"])
+def test_the_estimates_bound_the_errors_at_every_record(begun, turn, method, rng):
+    # Differences of the two runs go through zero on the way: plain ones are exceeded
+    # by factors of up to 300. And a start at one point is rough for every ds.
+    equilibrium = rng.uniform(0.2, 1.0, 20)
+    equilibrium /= equilibrium.sum()
+    generator = reversible(equilibrium, chain(20))
+    start = np.zeros(20)
+    start[rng.integers(20)] = 1.0
+    if begun == "anywhere":
+        start = rng.uniform(0.0, 1.0, 20) ** 4
+        start /= start.sum()
+    gap = -np.sort(np.linalg.eigvals(generator.toarray()).real)[-2]
+    n_steps = max(6, round(4.0 / turn))
+    ds = turn / gap
+    schedule = make_schedule((0.0, n_steps * ds), ds, ds * np.arange(n_steps + 1))
+    number = np.arange(20.0)
+    found, estimates = relax_extrapolated(
+        generator, start, equilibrium, schedule, method=method,
+        observables={"number": number, "square": number**2},
+    )  # fmt: skip
+    step = expm(ds * generator.toarray())
+    exact = [start]
+    for _ in range(n_steps):
+        exact.append(step @ exact[-1])
+    true = {
+        "relative_entropy": [relative_entropy_of(one, equilibrium) for one in exact],
+        "entropy_dissipation": [Exchange(generator)(one) for one in exact],
+        "number": [number @ one for one in exact],
+        "square": [number**2 @ one for one in exact],
+    }
+    series = {**found.averages, **vars(found)}
+    for name, values in true.items():
+        # At the start the dissipation of a point is infinite; no step was made.
+        off = np.abs(series[name] - values)[1:]
+        # Products of matrices and sums of twenty masses, relative to the largest.
+        rounding = 1e-12 * np.abs(values[1:]).max()
+        assert np.all(off <= estimates[name][1:] + rounding), name
+    off = np.abs(found.saved - exact).sum(axis=1)
+    assert np.all(off <= estimates["saved_l1"] + 1e-12)
+
+
+def test_a_step_longer_than_two_relaxation_times_is_told(problem):
+    generator, equilibrium, start = problem
+    gap = -np.sort(np.linalg.eigvals(generator.toarray()).real)[-2]
+    schedule = make_schedule((0.0, 20.0 / gap), 5.0 / gap)
+    told = r"slowest mode falls by exp\(-(.+)\) in a step.*; take ds below (.+)\.$"
+    with pytest.warns(UserWarning, match=told) as found:
+        relax_extrapolated(generator, start, equilibrium, schedule)
+    turn, longest = map(float, re.search(told, str(found[0].message)).groups())
+    # At the last record the entropy is down to the slowest mode, up to percents.
+    assert turn == pytest.approx(5.0, rel=0.05)
+    assert longest == pytest.approx(2.0 / gap, rel=0.05)
 
 
 @pytest.mark.parametrize("method", METHODS)

@@ -10,11 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fpsolve.density.solution import Solution
+from fpsolve.evolution.richardson import error_of_series, gain_of
 from fpsolve.evolution.series import is_extrapolated
 from fpsolve.evolution.stored import CombinedDensities, LazyDensities
 from fpsolve.grids import diagnostics
 
-__all__ = ["extrapolated", "largest_nearby"]
+__all__ = ["extrapolated"]
 
 Array = NDArray[np.float64]
 
@@ -47,15 +48,13 @@ def extrapolated(coarse: Solution, fine: Solution, order: int) -> Solution:
     order : int
         Order q of the scheme in ds.
     """
-    gain = 1.0 / (2**order - 1)
+    gain = gain_of(order)
     allowed = gain if _resolved(coarse) else 1.0
     series, errors = dict(fine.series), {}
     reach = _WINDOW * min(fine.grid.half_widths)
     for name, values in fine.series.items():
         change = values - coarse.series[name]
-        errors[name] = allowed * largest_nearby(fine.s, np.abs(change), reach)
-        # Both runs begin with the same density.
-        errors[name][0] = allowed * abs(change[0])
+        errors[name] = error_of_series(fine.s, change, reach, allowed)
         if is_extrapolated(name):
             series[name] = values + gain * change
     distances = [
@@ -96,18 +95,6 @@ def _resolved(coarse: Solution) -> bool:
         stacklevel=5,
     )
     return False
-
-
-def largest_nearby(s: Array, values: Array, reach: float) -> Array:
-    """max of `values` over |s′ − s| ≤ reach, neighbours included; s ascending."""
-    n = s.size
-    first = np.minimum(np.searchsorted(s, s - reach), np.maximum(np.arange(n) - 1, 0))
-    last = np.maximum(np.searchsorted(s, s + reach, "right"), np.arange(n) + 2)
-    bounds = np.stack([first, np.minimum(last, n)], axis=1).ravel()
-    # An end of its own, since a range must not end behind the array.
-    padded = np.append(values, -np.inf)
-    found: Array = np.maximum.reduceat(padded, bounds)[::2]
-    return found
 
 
 def _combined(fine: Any, coarse: Any, gain: float) -> Any:

@@ -12,9 +12,11 @@ from numpy.typing import NDArray
 from fpsolve._support.checks import check_one_of
 from fpsolve._support.progress import ProgressCallback
 from fpsolve.errors import RunInterrupted
+from fpsolve.evolution.richardson import gain_of
 from fpsolve.evolution.schedule import Schedule
 from fpsolve.reduced.entropy import Exchange, relative_entropy_of
 from fpsolve.reduced.implicit import METHODS, Method
+from fpsolve.reduced.step_errors import StepErrors
 
 __all__ = ["Relaxation", "extrapolated_relaxation", "relax", "relax_extrapolated"]
 
@@ -182,19 +184,21 @@ def relax_extrapolated(
         fine = run(schedule.refined(), schedule.n_steps)
     except RunInterrupted:
         raise RunInterrupted(coarse) from None
-    return extrapolated_relaxation(coarse, fine, METHODS[method].order)
+    return extrapolated_relaxation(coarse, fine, METHODS[method].order, schedule.ds)
 
 
 def extrapolated_relaxation(
-    coarse: Relaxation, fine: Relaxation, order: int
+    coarse: Relaxation, fine: Relaxation, order: int, ds: float
 ) -> tuple[Relaxation, dict[str, Array]]:
     """u = (2^q u_{ds/2} − u_{ds})/(2^q − 1), and |u_{ds/2} − u_{ds}|/(2^q − 1).
 
     Saved masses, averages, entropy and dissipation are extrapolated separately; the
     mass is not an approximation, and the minimum is that of the finer run. The
     estimates are the error of the finer run, an upper bound of that of the
-    extrapolated values while ds is small enough for the expansion to hold.
-    Extrapolated masses need not be positive.
+    extrapolated values: of a series the largest nearby, as its difference may change
+    its sign; and the whole difference or more in the first steps, where a rough start
+    has no expansion in ds. A ds beyond two time scales of the slowest mode comes with
+    a warning. Extrapolated masses need not be positive.
 
     Returns
     -------
@@ -207,22 +211,24 @@ def extrapolated_relaxation(
     ----------
     [Ric11]_.
     """
-    gain = 1.0 / (2**order - 1)
-
-    def combined(finer: Array, coarser: Array) -> tuple[Array, Array]:
-        correction = gain * (finer - coarser)
-        return finer + correction, np.abs(correction)
-
+    gain = gain_of(order)
+    estimates = StepErrors(fine, ds, gain)
     better: dict[str, Any] = {}
     errors: dict[str, Array] = {}
     for name in ("relative_entropy", "entropy_dissipation"):
-        pair = getattr(fine, name), getattr(coarse, name)
-        better[name], errors[name] = combined(*pair)
+        change = getattr(fine, name) - getattr(coarse, name)
+        better[name] = getattr(fine, name) + gain * change
+        errors[name] = estimates.of_series(change)
     averages = {}
     for name, values in fine.averages.items():
-        averages[name], errors[name] = combined(values, coarse.averages[name])
-    saved, moved = combined(fine.saved, coarse.saved)
-    errors["saved_l1"] = moved.sum(axis=1)
+        change = values - coarse.averages[name]
+        averages[name], errors[name] = (
+            values + gain * change,
+            estimates.of_series(change),
+        )
+    change = fine.saved - coarse.saved
+    errors["saved_l1"] = estimates.of_saved(change)
+    saved = fine.saved + gain * change
     return replace(fine, saved=saved, averages=averages, **better), errors
 
 

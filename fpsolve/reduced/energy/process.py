@@ -156,6 +156,12 @@ class EnergyProcess(Coefficients):
             If `grid` is not an EnergyGrid.
         RunInterrupted
             After Ctrl-C; `solution` is what was recorded, or the finished run at ds.
+
+        Warns
+        -----
+        UserWarning
+            If ds of an extrapolated run is longer than twice the time scale of the
+            slowest mode, so that its estimates may be too small.
         """
         self._check_grid(grid)
         save_at = None if save_at is None else checked_stops(save_at)

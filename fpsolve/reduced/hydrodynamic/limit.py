@@ -144,8 +144,9 @@ class HydrodynamicLimit(LimitEquation):
         save_at : iterable of float, optional
             Where to keep the density; by default at the end.
         extrapolate : bool
-            Run with ds and ds/2, combine both (Richardson) and attach error
-            estimates. The result need not be positive.
+            Run with ds and ds/2, combine both (Richardson) and attach estimates of
+            the error of the step to every series and density. The result need not be
+            positive.
         record_every : int
             Steps between two records.
         progress : bool or callable
@@ -161,6 +162,12 @@ class HydrodynamicLimit(LimitEquation):
             If mass reaches the boundary of the box; it carries the `solution`.
         RunInterrupted
             After Ctrl-C; `solution` is what was recorded, or the finished run at ds.
+
+        Warns
+        -----
+        UserWarning
+            If ds of an extrapolated run is longer than twice the time scale of the
+            slowest mode, so that its estimates may be too small.
         """
         plane = plane_of(grid)
         arguments = run.Arguments(

@@ -99,7 +99,7 @@ def solve(
             series=series_of(relaxation, plane),
             saved_s=relaxation.saved_s,
             densities=relaxation.saved.reshape(-1, *plane.shape) / plane.cell_area,
-            errors=None if errors is None else errors_of(errors),
+            errors=None if errors is None else errors_of(relaxation, errors),
             provenance={**watch.provenance(n_steps), "run": arguments.to_dict()},
             initial_density=arguments.start,
             status=status,
@@ -155,16 +155,28 @@ def series_of(relaxation: Relaxation, plane: PlaneGrid) -> dict[str, Array]:
     }
 
 
-def errors_of(errors: Mapping[str, Array]) -> dict[str, Array]:
-    """Estimates under the names of the series; none for the second moments."""
-    names = {
-        "relative_entropy": "relative_entropy",
-        "entropy_dissipation": "entropy_dissipation",
-        "xi1": "mean_xi1",
-        "xi2": "mean_xi2",
-        "saved_l1": "density_l1",
+def errors_of(relaxation: Relaxation, errors: Mapping[str, Array]) -> dict[str, Array]:
+    """Estimates under the names of the series.
+
+    Those of averages add up in the variances, which are differences of them.
+    """
+    mass = relaxation.mass
+    mean1, mean2 = (np.abs(relaxation.averages[name] / mass) for name in _MOMENTS[:2])
+    of = {name: errors[name] / mass for name in (*_MOMENTS, "ring")}
+    error1, error2 = of["xi1"], of["xi2"]
+    return {
+        "relative_entropy": errors["relative_entropy"],
+        "entropy_dissipation": errors["entropy_dissipation"],
+        "boundary_mass": of["ring"],
+        "mean_xi1": error1,
+        "mean_xi2": error2,
+        "variance_xi1": of["xi1_xi1"] + (2 * mean1 + error1) * error1,
+        "variance_xi2": of["xi2_xi2"] + (2 * mean2 + error2) * error2,
+        "covariance": (
+            of["xi1_xi2"] + mean1 * error2 + mean2 * error1 + error1 * error2
+        ),
+        "density_l1": errors["saved_l1"],
     }
-    return {name: errors[key] for key, name in names.items()}
 
 
 def check_box(solution: HydrodynamicSolution, tolerance: float) -> None:
