@@ -18,6 +18,7 @@ SCRIPTS = (
     "ergodic_averages.py",
     "spectral_reference.py",
     "stationary_densities.py",
+    "stationary_boxes.py",
     "decay_rate_is_the_gap.py",
     "entropy_rate_coverage.py",
     "rate_asymptotes.py",

@@ -18,7 +18,7 @@ Array = NDArray[np.float64]
 Errors = Mapping[str, float]
 
 DENSITY = "density"
-# What the periodic box does, measured by validation/stationary_densities.py: the mass
+# What the periodic box does, measured by validation/stationary_boxes.py: the mass
 # that meets its edge comes back on the other side, and spreads from there over the
 # whole density. ∫ |p − p_exact| is at most this times the half width times the density
 # per length along the edge.
