@@ -1,4 +1,4 @@
-"""Where compiled kernels cannot be kept they are compiled anew, and it is said once."""
+"""Kernels are compiled once; where they cannot be kept anew, and it is said once."""
 
 import os
 import runpy
@@ -8,6 +8,8 @@ from pathlib import Path
 
 import numba
 import pytest
+
+from fpsolve._kernels import compile_lock
 
 KERNELS = """
 from fpsolve._kernels.compiling import njit
@@ -37,6 +39,53 @@ tempfile.TemporaryFile = refuse
 FULL = """
 import resource
 resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0))
+"""
+# Compilation takes so long that two processes must meet in it.
+TOGETHER = """
+import os, time
+import numba.core.event as event
+import own_kernels as kernels
+
+class Slow(event.Listener):
+    def on_start(self, compilation):
+        time.sleep(0.3)
+    def on_end(self, compilation):
+        pass
+
+event.register("numba:compile", Slow())
+for _ in range(2):
+    if os.fork() == 0:
+        assert kernels.four_times(2.0) == 8.0
+        both = kernels.twice, kernels.four_times
+        print(*(sum(one.stats.cache_misses.values()) for one in both), flush=True)
+        os._exit(0)
+for _ in range(2):
+    assert os.waitstatus_to_exitcode(os.wait()[1]) == 0
+"""
+# A process that is killed in the lock, and has forked another one there.
+KILLED = """
+import os, signal
+import own_kernels as kernels
+from fpsolve._kernels import compile_lock
+
+inside, told = os.pipe()
+until, end = os.pipe()
+if os.fork() == 0:
+    with compile_lock.locked(compile_lock.lock_path(kernels.twice)):
+        if os.fork() == 0:
+            os.close(end)
+            os.write(told, b"1")
+            os.read(until, 1)
+            os._exit(0)
+        os.kill(os.getpid(), signal.SIGKILL)
+os.read(inside, 1)
+os.wait()
+
+def refuse(seconds):
+    raise AssertionError("waits for a process that is not there any more")
+
+compile_lock.time.sleep = refuse
+print(kernels.twice(3.0))
 """
 
 
@@ -90,6 +139,32 @@ def test_a_damaged_cache_is_begun_anew(tmp_path, monkeypatch):
         (file,) = (tmp_path / "cache").rglob(f"*{suffix}")
         file.write_bytes(content)
         assert [loaded(), loaded()] == [False, True]
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="locks of POSIX")
+def test_of_two_processes_one_compiles_and_the_other_loads(run):
+    found, _ = run(TOGETHER)
+    # Misses of both kernels, in either order.
+    assert sorted(found.splitlines()) == ["0 0", "1 1"]
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="locks of POSIX")
+def test_the_lock_of_a_killed_process_is_free(run):
+    found, _ = run(KILLED)
+    assert found == "6.0"
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="locks of POSIX")
+def test_a_process_that_has_stopped_is_not_waited_for_without_end(
+    tmp_path, monkeypatch
+):
+    source = tmp_path / "own_kernels.py"
+    source.write_text(KERNELS)
+    monkeypatch.setattr(numba.config, "CACHE_DIR", str(tmp_path / "cache"))
+    monkeypatch.setattr(compile_lock, "PATIENCE", 0.1)
+    twice = runpy.run_path(str(source))["twice"]
+    with compile_lock.locked(compile_lock.lock_path(twice)):
+        assert twice(3.0) == 6.0
 
 
 def test_the_command_line_works_where_nothing_can_be_kept(run):

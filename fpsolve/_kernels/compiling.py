@@ -1,10 +1,14 @@
-"""`numba.njit` that works where nothing can be kept, and where threads are shared."""
+"""`numba.njit` that works where nothing can be kept, and where threads are shared.
+
+What one process compiles, others that need it meanwhile wait for.
+"""
 
 import warnings
 from functools import wraps
 
 import numba
 
+from fpsolve._kernels.compile_lock import compile_alone
 from fpsolve._kernels.threads import parallel_region
 
 __all__ = ["ParallelKernel", "kernels_are_kept", "njit"]
@@ -28,6 +32,7 @@ def njit(**options):
             tell(error)
             compiled = numba.njit(**{**options, "cache": False})(function)
         forgive(compiled)
+        compile_alone(compiled)
         return ParallelKernel(compiled) if options.get("parallel") else compiled
 
     return decorate

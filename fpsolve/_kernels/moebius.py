@@ -57,4 +57,7 @@ def rotation_matrices(openings, heat, balanced, out):
             for n in range(n_modes):
                 damped[m, n] = heat[m] * rotation[m, n]
         product = np.dot(rotation, damped)
-        out[q] = product if balanced else product.T
+        # Value by value: to assign rows, numba would compile the text of its errors.
+        for m in range(n_modes):
+            for n in range(n_modes):
+                out[q, m, n] = product[m, n] if balanced else product[n, m]

@@ -112,7 +112,9 @@ def wrap_rows(lead, n2, rows):
     """Fill the rows before `lead` and from lead + n2 on periodically."""
     for j in range(rows.shape[0]):
         if j < lead or j >= lead + n2:
-            rows[j] = rows[lead + (j - lead) % n2]
+            source = lead + (j - lead) % n2
+            for k in range(rows.shape[1]):
+                rows[j, k] = rows[source, k]
 
 
 @njit(cache=True, parallel=True, fastmath={"contract"}, error_model="numpy")
