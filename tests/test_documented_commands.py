@@ -18,8 +18,13 @@ PAGES = all_pages()
 # Seconds at most; the others are run by the tests of the command line.
 QUICK = [
     "fpsolve info",
-    "fpsolve energy --noise 0.3 --passage 0.1 0.5",
-    "fpsolve spectrum --potential linear --noise 0.8",
+    *(
+        pytest.param(line, marks=pytest.mark.documents)
+        for line in (
+            "fpsolve energy --noise 0.3 --passage 0.1 0.5",
+            "fpsolve spectrum --potential linear --noise 0.8",
+        )
+    ),
 ]
 
 

@@ -20,6 +20,21 @@ TEST_COMMAND = (
 )
 
 
+# Pages that compute little; the others are left to the step that builds the pages.
+QUICK = ("README.md", "docs/checkpoints.md", "docs/benchmarks.md")
+
+
+def marked(pages):
+    """Pages as parameters, with the marker of those that take long."""
+    return [
+        pytest.param(
+            page, id=name_of(page),
+            marks=[] if name_of(page) in QUICK else pytest.mark.documents,
+        )
+        for page in pages
+    ]  # fmt: skip
+
+
 def start_of(page):
     """Names a page may use without defining them: results.md begins after a run."""
     namespace = {"__name__": "example"}
@@ -34,7 +49,7 @@ def start_of(page):
     return namespace
 
 
-@pytest.mark.parametrize("page", pages_with("python"), ids=name_of)
+@pytest.mark.parametrize("page", marked(pages_with("python")))
 def test_the_python_blocks_of_a_page_run_and_print_what_it_says(
     page, tmp_path, monkeypatch
 ):

@@ -8,6 +8,8 @@ import shutil
 import pytest
 from result_files import KINDS, page_file
 
+pytestmark = pytest.mark.documents
+
 CHROMIUM, DRIVER = shutil.which("chromium"), shutil.which("chromedriver")
 WIDE, NARROW = 1200, 400
 SEVERAL = ("fibres.nc", "rate-quadratic.nc", "spectrum.nc")
