@@ -12,6 +12,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 import numba
 import numpy as np
 import pytest
+from formulas import parse_each_once
 from hypothesis import HealthCheck, settings
 
 from fpsolve.grids.phase_space import PhaseSpaceGrid
@@ -33,6 +34,8 @@ COMMON = {"deadline": None, "suppress_health_check": [HealthCheck.too_slow]}
 settings.register_profile("ci", derandomize=True, **COMMON)
 settings.register_profile("thorough", max_examples=1000, **COMMON)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "ci"))
+
+parse_each_once()
 
 
 @pytest.fixture(autouse=True)
