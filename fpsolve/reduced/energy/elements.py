@@ -92,6 +92,22 @@ class Elements:
             (half * _ramps(self._places(g), self.degree)).reshape(self.size, -1)
         )
 
+    def combined(self, coefficients: Array, g: Array) -> Array:
+        """Σ coefficients · basis functions at g, shape (len(g),).
+
+        In the element of each g alone: of the elements below, only the ramps of P_0
+        have a height that stays.
+        """
+        half = 0.5 * np.diff(self.faces)
+        element = np.clip(np.searchsorted(self.faces, g) - 1, 0, len(half) - 1)
+        x = np.clip((g - self.faces[element]) / half[element] - 1.0, -1.0, 1.0)
+        shares = half[:, None] * coefficients.reshape(-1, self.degree)
+        below = np.concatenate([[0.0], 2.0 * np.cumsum(shares[:-1, 0])])
+        ramps = _ramps(x[None, :], self.degree)[0]
+        return np.asarray(
+            below[element] + np.einsum("kn,nk->n", ramps, shares[element])
+        )
+
     def slopes(self, g: Array) -> Array:
         """Derivatives of the basis functions at g, none on a face, (size, len(g))."""
         x = self._places(g)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -117,11 +118,17 @@ def starting_energies(
 def _stationary(
     averages: OrbitAverages, n_paths: int, generator: np.random.Generator
 ) -> Array:
-    """Inverse of the distribution N, by monotone interpolation, with a fair sign."""
+    """Quantiles of N at uniform numbers, with a fair sign."""
+    quantile = _quantile(averages)
+    sign = generator.choice([-1.0, 1.0], size=n_paths)
+    return np.asarray(sign * quantile(generator.uniform(size=n_paths)))
+
+
+@lru_cache(maxsize=16)
+def _quantile(averages: OrbitAverages) -> Any:
+    """Inverse of the distribution N of one well, by monotone interpolation."""
     from scipy.interpolate import PchipInterpolator
 
     g = averages.well.g_max * np.sin(np.linspace(0, np.pi / 2, _N_QUANTILES)) ** 2
     beyond = averages.measure(g)
-    quantile = PchipInterpolator(beyond[::-1] / beyond[0], g[::-1])
-    sign = generator.choice([-1.0, 1.0], size=n_paths)
-    return np.asarray(sign * quantile(generator.uniform(size=n_paths)))
+    return PchipInterpolator(beyond[::-1] / beyond[0], g[::-1])

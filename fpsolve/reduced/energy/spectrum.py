@@ -81,9 +81,10 @@ class EnergySpectrum:
                 f"{index}; ask for more eigenvalues."
             )
         energies = check_energies("g", g, self.g_max, signed=True)
-        basis = self._elements.values(np.abs(energies).ravel())
-        values = self._at_zero[index] + self._coefficients[index] @ basis
-        values = values.reshape(energies.shape)
+        combined = self._elements.combined(
+            self._coefficients[index], np.abs(energies).ravel()
+        )
+        values = (self._at_zero[index] + combined).reshape(energies.shape)
         if self.family == "odd":
             values = values * np.sign(energies)
         return np.asarray(values)

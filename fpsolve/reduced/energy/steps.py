@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -31,7 +33,7 @@ class Transition:
     def __init__(self, averages: OrbitAverages, noise: float, ds: float) -> None:
         from scipy.linalg import eigh_tridiagonal
 
-        self.grid = EnergyGrid(averages, _N_CELLS, signed=True)
+        self.grid = cells_of(averages)
         generator = self.grid.generator(noise)
         root = np.sqrt(self.grid.equilibrium)
         # Detailed balance makes it symmetric in the weights √equilibrium.
@@ -95,12 +97,7 @@ class Sphere:
 
     def __init__(self, averages: OrbitAverages, noise: float, ds: float) -> None:
         self.g_max = averages.well.g_max
-        self.nodes = np.linspace(0.0, 1.0, _N_NODES)
-        z = self.nodes[1:-1] ** 4
-        action = averages.action(z * self.g_max)
-        period = averages.period(z * self.g_max)
-        share = 2.0 * action / (period * self.g_max**2 * (1.0 - z**2))
-        self.share = np.concatenate([[0.0], share, [1.0]])
+        self.nodes, self.share = noise_of_height(averages)
         self.variance = 0.5 * noise**2 * ds
 
     def start(self, g: Array, generator: np.random.Generator) -> Array:
@@ -121,3 +118,21 @@ class Sphere:
         radius = np.sqrt((1.0 - z) * (1.0 + z))
         height = z * np.cos(way) + radius * meridian * np.sinc(way / np.pi)
         return np.asarray(np.clip(height, -1.0, 1.0))
+
+
+# Neither knows the noise: a well has one of each, for all its samples.
+@lru_cache(maxsize=16)
+def cells_of(averages: OrbitAverages) -> EnergyGrid:
+    """The cells between which `Transition` steps."""
+    return EnergyGrid(averages, _N_CELLS, signed=True)
+
+
+@lru_cache(maxsize=16)
+def noise_of_height(averages: OrbitAverages) -> tuple[Array, Array]:
+    """Nodes t, with |z| = t⁴, and the factor ρ of `Sphere` there."""
+    g_max = averages.well.g_max
+    nodes = np.linspace(0.0, 1.0, _N_NODES)
+    z = nodes[1:-1] ** 4
+    action, period = averages.action(z * g_max), averages.period(z * g_max)
+    share = 2.0 * action / (period * g_max**2 * (1.0 - z**2))
+    return nodes, np.concatenate([[0.0], share, [1.0]])

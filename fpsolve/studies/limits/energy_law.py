@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import stats
+from scipy.special import i0e
 
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.paths.laws import GaussianLaw
@@ -71,16 +71,23 @@ class SmoothedLaw:
 
 
 def density_of(law: GaussianLaw) -> Any:
-    """The density p(ξ1, ξ2, α) of a Gaussian law, as a function."""
-    plane = stats.multivariate_normal(law.mean, law.variance)
-    angle = stats.vonmises(law.concentration, loc=law.angle or 0.0)
-    uniform = 1.0 / (2.0 * np.pi)
+    """The density p(ξ1, ξ2, α) of a Gaussian law, as a function.
+
+    Written out: it is asked for at millions of points, where the distributions of
+    scipy look at each of their arguments several times.
+    """
+    mean1, mean2 = law.mean
+    (first, mixed), (_, second) = np.linalg.inv(np.array(law.variance))
+    angle, concentration = law.angle or 0.0, law.concentration
+    scale = np.sqrt(first * second - mixed**2) / (2.0 * np.pi) ** 2
+    scale /= i0e(concentration)
 
     def density(xi1: Array, xi2: Array, alpha: Array) -> Array:
-        turned = angle.pdf(alpha) if law.concentration > 0 else uniform
-        points = np.stack(np.broadcast_arrays(xi1, xi2), axis=-1)
-        # scipy drops axes of length one.
-        return np.asarray(plane.pdf(points).reshape(points.shape[:-1]) * turned)
+        x, y = xi1 - mean1, xi2 - mean2
+        exponent = -0.5 * (x * (first * x + 2.0 * mixed * y) + second * y**2)
+        if concentration > 0:
+            exponent = exponent + concentration * (np.cos(alpha - angle) - 1.0)
+        return np.asarray(scale * np.exp(exponent))
 
     return density
 
