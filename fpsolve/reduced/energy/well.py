@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +19,8 @@ _REACH = 60.0
 _N_PROBES = 2401
 # Squares of energies down to e^{-300} are still numbers.
 _DEEPEST = 300.0
+# Turning points of so many energies at once are kept.
+_MOST_KEPT = 10_000
 
 
 class Well:
@@ -105,6 +107,11 @@ class Well:
 
     def turning_points(self, e: Array) -> tuple[Array, Array]:
         """The two y with B(e^y) - y = e, left and right of the circle; e > bottom."""
+        if e.size > _MOST_KEPT:
+            return self._turning_points(e)
+        return _kept_turning_points(self, e.shape, e.tobytes())
+
+    def _turning_points(self, e: Array) -> tuple[Array, Array]:
         from scipy.optimize.elementwise import bracket_root, find_root
 
         def excess(y: Array, e: Array) -> Array:
@@ -135,3 +142,15 @@ class Well:
                 "needs orbits around one circle."
             )
         return float(y[turns[0]]), float(y[turns[0] + 1])
+
+
+# Most of what an average over orbits costs; several averages are taken at the same
+# energies, each the same for every noise.
+@lru_cache(maxsize=64)
+def _kept_turning_points(
+    well: Well, shape: tuple[int, ...], energies: bytes
+) -> tuple[Array, Array]:
+    found = well._turning_points(np.frombuffer(energies).reshape(shape))
+    for one in found:
+        one.flags.writeable = False
+    return found
