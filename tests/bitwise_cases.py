@@ -166,7 +166,7 @@ CASES = {
     "spectrum, quadratic": (spectrum, MODEL),
     "spectrum, linear": (spectrum, fp.LayDownModel(LINEAR, 1.0)),
     "spectrum, power": (spectrum, fp.LayDownModel(fp.PowerPotential(4.0), 1.0)),
-    "spectrum, belt": (spectrum, BELT, 1e-4),
+    "spectrum, belt": (spectrum, BELT, 1e-3),
     "spectral_solve": (spectral_solve,),
     "paths, splitting": (paths, "splitting", BELT),
     "paths, euler_maruyama": (paths, "euler_maruyama", NOZZLE),

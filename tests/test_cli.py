@@ -251,7 +251,8 @@ def test_a_full_disk_is_an_error_without_a_traceback(
 
 def test_a_stored_result_is_drawn_beside_itself_or_elsewhere(fpsolve, tmp_path):
     (tmp_path / "out").mkdir()
-    path = relaxing_solution().save(tmp_path / "out" / "run.nc")
+    # A movie of two frames.
+    path = relaxing_solution(saved=(0.0, 5.0)).save(tmp_path / "out" / "run.nc")
     result = fpsolve("plot", path)
     assert result.exit_code == 0, result.output
     assert len(result.stdout.split()) == 5

@@ -284,7 +284,7 @@ def test_a_movie_of_paths_is_refused_before_anything_is_drawn(
 
 
 def test_a_solution_is_still_drawn_with_its_movie(fpsolve, tmp_path):
-    path = relaxing_solution().save(tmp_path / "run.nc")
+    path = relaxing_solution(saved=(0.0, 5.0)).save(tmp_path / "run.nc")
     result = fpsolve("plot", path, "--movie")
     assert result.exit_code == 0, result.output
     assert (tmp_path / "run.gif").exists()
