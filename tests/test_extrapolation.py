@@ -8,12 +8,12 @@ from problems import DecayingCirculation
 from fpsolve import initial
 from fpsolve.density.schemes import drift_kick, semi_lagrangian
 from fpsolve.density.solve import solve
+from fpsolve.evolution.richardson import largest_nearby
 from fpsolve.grids.diagnostics import l1_distance, mass, moments, relative_entropy
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.model.curves import RotatingNozzle
 from fpsolve.model.laydown import LayDownModel
 from fpsolve.model.potentials import QuadraticPotential
-from fpsolve.evolution.richardson import largest_nearby
 
 MODEL = LayDownModel(QuadraticPotential(), 1.0)
 GRID = PhaseSpaceGrid(6.0, (20, 20, 16))

@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 import warnings
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fpsolve.evolution.richardson import error_of_series
-
-if TYPE_CHECKING:
-    from fpsolve.reduced.relaxation import Relaxation
 
 __all__ = ["StepErrors"]
 
@@ -51,7 +48,7 @@ class StepErrors:
         If ds is longer than twice the time scale of the slowest mode.
     """
 
-    def __init__(self, fine: Relaxation, ds: float, gain: float) -> None:
+    def __init__(self, fine: Any, ds: float, gain: float) -> None:
         self.fine, self.ds, self.gain = fine, ds, gain
         entropy, loss = fine.relative_entropy, fine.entropy_dissipation
         known = (entropy > NOISE_LEVEL) & (loss > 0.0) & np.isfinite(loss)
