@@ -380,3 +380,24 @@ def test_a_correction_of_the_mass_in_other_units_is_no_larger(sigma):
     away = np.abs(sigma**2 * other.final - plain.final).sum() * volume
     corrected = sum(np.abs(one.mass_correction).sum() for one in (plain, other))
     assert 1e-9 < away < corrected
+
+
+@pytest.mark.parametrize("s", ["x", [], [0.5, -1.0], [np.nan], -1.0, np.inf], ids=repr)
+def test_an_ornstein_uhlenbeck_law_is_that_of_an_arclength(s):
+    """Lists were not looked at: a negative s gave a covariance below zero."""
+    model = fp.LayDownModel(fp.QuadraticPotential(), 2.0, fp.MovingBelt(0.1))
+    law = fp.OrnsteinUhlenbeckLimit(model)
+    with pytest.raises((TypeError, ValueError), match="`s` must"):
+        law.density(0.0, 0.0, s)
+    if s != []:
+        for question in (law.mean, law.covariance, law.relative_entropy):
+            with pytest.raises((TypeError, ValueError), match="`s` must"):
+                question(s)
+
+
+def test_folders_and_floors_of_studies_are_folders_and_numbers():
+    with pytest.raises(TypeError, match="`directory` must be the name of a file, got"):
+        studies.sweep(lambda x: {"y": x}, [{"x": 1}], directory=fp.QuadraticPotential)
+    for floor, error in (({}, TypeError), ([1.0, 2.0], ValueError)):
+        with pytest.raises(error, match=r"`error_floor` must (hold|be one)"):
+            studies.fitted_order([1.0, 0.5, 0.25], [1.0, 0.5, 0.25], floor)

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from fpsolve._support.arrays import check_numbers
+from fpsolve._support.arrays import check_finite_numbers, check_numbers
 from fpsolve._support.checks import check_integer, check_non_negative, check_pair
 from fpsolve.grids.initial import checked_covariance
 from fpsolve.model.laydown import LayDownModel
@@ -100,6 +100,7 @@ class OrnsteinUhlenbeckLimit:
 
     def density(self, xi1: ArrayLike, xi2: ArrayLike, s: float = 0.0) -> Array:
         """𝒫(ξ1, ξ2, s), in the broadcast shape of xi1 and xi2."""
+        s = check_non_negative("s", s)
         mean, covariance = self.mean(s), self.covariance(s)
         (a, b), (_, c) = np.linalg.inv(covariance)
         away1 = np.subtract(check_numbers("xi1", xi1), mean[0])
@@ -146,11 +147,17 @@ class OrnsteinUhlenbeckLimit:
 
     def _decay(self, s: ArrayLike) -> Array:
         """e^{−k_i s}; shape (..., 2)."""
-        if np.ndim(s) == 0:
-            check_non_negative("s", s)
-        return np.asarray(np.exp(-np.multiply.outer(s, self.rates)))
+        return np.asarray(np.exp(-np.multiply.outer(_arclengths(s), self.rates)))
 
     def _gained(self, s: ArrayLike) -> Array:
         """σ_i² (1 − e^{−2 k_i s}); shape (..., 2)."""
-        lost = -np.expm1(-2.0 * np.multiply.outer(s, self.rates))
+        lost = -np.expm1(-2.0 * np.multiply.outer(_arclengths(s), self.rates))
         return np.asarray(self.stationary_variance * lost)
+
+
+def _arclengths(s: ArrayLike) -> Array:
+    """s as an array of numbers s >= 0."""
+    values = check_finite_numbers("s", s)
+    if not (values >= 0.0).all():
+        raise ValueError(f"`s` must be non-negative, got {values.min():g}.")
+    return values

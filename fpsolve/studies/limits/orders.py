@@ -95,9 +95,12 @@ def fitted_order(
         If the shapes differ or a parameter is not positive.
     """
     logarithm_of_epsilon, logarithm = _logarithms(epsilon, error)
-    floor = np.broadcast_to(
-        0.0 if error_floor is None else error_floor, np.shape(error)
-    )
+    floor = check_numbers("error_floor", 0.0 if error_floor is None else error_floor)
+    if floor.shape not in ((), logarithm.shape):
+        raise ValueError(
+            "`error_floor` must be one number or one for each of the "
+            f"{logarithm.size} points, got shape {floor.shape}."
+        )
     usable = np.isfinite(logarithm) & (
         np.asarray(error, dtype=np.float64) > _ABOVE_FLOOR * floor
     )

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fpsolve._support.blas import one_blas_thread
-from fpsolve._support.checks import check_call, check_kind, shown
+from fpsolve._support.checks import check_call, check_kind, check_path, shown
 from fpsolve.errors import RunInterrupted
 from fpsolve.model.identity.digests import digest_or_none
 from fpsolve.studies.sweeps.executors import executor_for, finished_tasks
@@ -116,7 +116,7 @@ def sweep(
         check_kind("key", key, str)
     store, paths = None, []
     if directory is not None:
-        store = CaseStore(Path(directory), function, key)
+        store = CaseStore(check_path("directory", directory), function, key)
         # Before anything runs that could change what the arguments refer to.
         paths = [store.path(case.arguments) for case in listed]
         known = zip(listed, paths, strict=True)
