@@ -8,6 +8,7 @@ from elsewhere. All of them survive pickling, so that they cross process boundar
 from __future__ import annotations
 
 import copyreg
+import math
 import os
 from collections.abc import Callable, Sequence
 from typing import Any
@@ -448,10 +449,10 @@ class ToleranceError(FpsolveError):
         tolerance: float,
         remedy: str = "raise `memory_limit` or enlarge `tolerance`",
     ) -> None:
-        super().__init__(
-            f"tolerance {tolerance:g} not reached: the error is estimated at "
-            f"{reached:.2g}; {remedy}."
-        )
+        known = f"the error is estimated at {reached:.2g}"
+        if not math.isfinite(reached):
+            known = "there is no estimate of the error yet"
+        super().__init__(f"tolerance {tolerance:g} not reached: {known}; {remedy}.")
         self.reached = reached
         self.tolerance = tolerance
 

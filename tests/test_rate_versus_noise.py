@@ -26,12 +26,17 @@ from fpsolve.plotting.rates import (
     plot_rates,
     plot_spectrum,
 )
+from fpsolve.spectral.bases.sectors import Truncation
 from fpsolve.spectral.eigen.dataset import spectrum_dataset
 from fpsolve.spectral.eigen.spectrum import spectrum
 from fpsolve.studies.observables import default_observables
 from fpsolve.studies.rates.cases import PARTS
 from fpsolve.studies.rates.modes import CLASSES, slowest_modes
-from fpsolve.studies.rates.poisson import asymptotic_variances
+from fpsolve.studies.rates.poisson import (
+    AsymptoticVariances,
+    asymptotic_variances,
+    known_only,
+)
 from fpsolve.studies.rates.rate_versus_noise import rate_versus_noise
 from fpsolve.studies.rates.relaxation import _slowest, plan_relaxation
 
@@ -207,6 +212,27 @@ def test_at_large_noise_variances_are_those_of_the_diffusion():
     )
     # The next order is A⁻⁴.
     assert found.values[0] == pytest.approx(2 * 144, rel=1e-3)
+
+
+def test_variances_that_no_basis_resolves_are_refused():
+    def position(xi1, xi2, alpha):
+        return xi1
+
+    model = LayDownModel(QUADRATIC, 1e-9)
+    with pytest.raises(
+        ToleranceError, match=r"at noise 1e-09 no basis that fits resolves .* of x:"
+    ):
+        asymptotic_variances(model, {"x": position}, tolerance=1e-2)
+
+
+def test_of_variances_a_study_keeps_those_that_are_known():
+    found = AsymptoticVariances(
+        np.array([2.0, 2.0, 0.0]),
+        np.array([0.1, 1.5, 1e-14]),
+        np.ones(3),
+        Truncation(16, 8),
+    )
+    np.testing.assert_array_equal(known_only(found).values, [2.0, np.nan, 0.0])
 
 
 def test_a_case_that_fails_leaves_a_message_and_the_others(monkeypatch):

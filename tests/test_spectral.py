@@ -15,6 +15,8 @@ from fpsolve.spectral.bases.choice import discretisation_for
 from fpsolve.spectral.bases.hermite import HermiteDiscretisation
 from fpsolve.spectral.bases.sectors import Truncation
 from fpsolve.spectral.bases.tensor import TensorDiscretisation
+from fpsolve.spectral.eigen.eigenvalues import ShiftedInverse
+from fpsolve.spectral.eigen.refinement import slowness
 from fpsolve.spectral.eigen.survey import Scale, survey
 
 ODD, EVEN, ONE = Sector(0, -1), Sector(0, 1), Sector(1)
@@ -343,6 +345,55 @@ def test_wrong_arguments_are_refused():
         HermiteDiscretisation(1.0, 1.0).matrix(Sector(parity=1), *truncation)
     with pytest.raises(ValueError, match=r"`sector` must have a parity and no M"):
         TensorDiscretisation(1.0, 1.0, 1.0).matrix(ONE, *truncation)
+
+
+@pytest.mark.parametrize(
+    "potential",
+    [fp.LinearPotential(), fp.QuadraticPotential(1.0, 1.3)],
+    ids=["linear", "anisotropic"],
+)
+@pytest.mark.parametrize("noise", [1e-3, 0.02])
+def test_little_noise_ends_with_what_the_spectrum_would_take(potential, noise):
+    model = fp.LayDownModel(potential, noise)
+    with pytest.raises(
+        ToleranceError,
+        match=rf"at noise {noise:g} it takes work of .* or more, where 1e\+08 is "
+        r"allowed: choose a larger noise .* or raise `work_limit`",
+    ) as caught:
+        spectral_gap(model, tolerance=1e-3, work_limit=1e8)
+    assert caught.value.reached > 1e-3
+
+
+def test_work_that_suffices_changes_nothing_and_none_is_refused():
+    model = quadratic(1.0)
+    assert spectral_gap(model) == spectral_gap(model, work_limit=1e12)
+    with pytest.raises(ToleranceError, match="no estimate of the error yet; at noise"):
+        spectral_gap(model, work_limit=1.0)
+    with pytest.raises(ValueError, match="`work_limit` must be positive and finite"):
+        spectral_gap(model, work_limit=float("nan"))
+
+
+def test_changes_that_fall_slowly_leave_more_than_the_last():
+    # Partial sums of 1/n³: the change is 1/n³, what is left about 1/(2n²).
+    for n in (6, 10, 40):
+        left = sum(1 / m**3 for m in range(n + 1, 10_000))
+        assert left <= slowness(1 / n**3, 1 / (n - 1) ** 3) / n**3
+    # A geometric series of ratio 1/4 leaves less than the last term.
+    assert slowness(0.25, 1.0) == 1.0
+    assert slowness(0.0, 0.0) == 1.0
+
+
+def test_a_nearly_skew_matrix_is_eliminated_with_few_entries():
+    basis = HermiteDiscretisation(1.0, 0.02)
+    matrix = basis.matrix(ONE, *basis.truncation(3))
+    quiet = ShiftedInverse(matrix, complex(-1e-4, 0.3))
+    # Row exchanges on a symmetric order fill more than half of the triangles.
+    assert quiet.factors.nnz < 0.1 * matrix.shape[0] ** 2
+    right = np.random.default_rng(1).standard_normal(matrix.shape[0]) + 0j
+    found = quiet.factors.solve(right)
+    defect = matrix @ found - quiet.shift * found - right
+    # Rounding of entries up to degree times harmonics.
+    assert np.linalg.norm(defect) < 1e-12 * np.linalg.norm(found)
 
 
 def test_a_tolerance_out_of_reach_of_the_memory_says_so():

@@ -462,6 +462,26 @@ def test_memory_that_does_not_suffice_is_told():
         spectral_steady_state(slow, memory_limit=10**8)
 
 
+@pytest.mark.parametrize("noise", [1e5, 1e59])
+def test_much_noise_is_refused_by_the_number_of_steps(noise):
+    model = fp.LayDownModel(fp.QuadraticPotential(1.0, 1.3), noise)
+    with pytest.raises(ToleranceError, match=r"work of .* or more.*earlier `s`"):
+        spectral_solve(model, START, 0.3, tolerance=1e-3, work_limit=1e8)
+
+
+def test_little_noise_ends_within_the_work():
+    model = fp.LayDownModel(fp.QuadraticPotential(1.0, 1.3), 0.01)
+    with pytest.raises(ToleranceError, match="where 1e\\+08 is allowed"):
+        spectral_solve(model, START, 30.0, tolerance=1e-3, work_limit=1e8)
+
+
+@pytest.mark.parametrize("noise", [1e15, 1e59])
+def test_a_stationary_density_beyond_all_numbers_is_refused(noise):
+    model = fp.LayDownModel(fp.QuadraticPotential(), noise, fp.MovingBelt(0.2))
+    with pytest.raises(ToleranceError, match="coefficients grow beyond all numbers"):
+        spectral_steady_state(model)
+
+
 def test_only_what_was_asked_for_can_be_evaluated(solutions):
     found = solutions["fixed"]
     with pytest.raises(ValueError, match=r"`s` must be one of 0, 0\.5, 1, 2, got 0\.7"):

@@ -8,14 +8,30 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csc_array, eye_array
-from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigs, splu
+from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, SuperLU, eigs, splu
 
-__all__ = ["ShiftedInverse", "factor_bytes", "neighbour", "residual_norm"]
+from fpsolve.spectral.work import Work
+
+__all__ = [
+    "ShiftedInverse",
+    "factor_bytes",
+    "factorised",
+    "neighbour",
+    "residual_norm",
+]
 
 Complex = NDArray[np.complex128]
 
 # Below this size LAPACK is as fast as Arnoldi, and Arnoldi needs room.
 DENSE = 40
+# A pivot may be this many times smaller than the largest entry of its column.
+THRESHOLD = 0.1
+# Where more of the columns have no such pivot on the diagonal, rows are exchanged all
+# the time and the symmetric order fills the factors; unless they are full anyway.
+FEW, SPARSE = 0.4, 20
+# Restarts of one Arnoldi iteration; most end after twenty. Below a size all eigenvalues
+# cost less than another iteration.
+RESTARTS, SMALL = 200, 600
 
 
 class ShiftedInverse:
@@ -31,11 +47,16 @@ class ShiftedInverse:
         Must not be an eigenvalue. Every point with a positive real part is safe:
         L + L* is negative semidefinite. A real shift keeps complex pairs exactly
         conjugate.
+    work : Work, optional
+        What all of it may cost.
     """
 
-    def __init__(self, matrix: csc_array, shift: complex) -> None:
+    def __init__(
+        self, matrix: csc_array, shift: complex, work: Work | None = None
+    ) -> None:
         self.matrix, self.size = matrix, matrix.shape[0]
         self.shift = complex(shift)
+        self.work = Work() if work is None else work
         self.dense = self.size <= DENSE
         if not self.dense:
             self._factorise()
@@ -45,13 +66,14 @@ class ShiftedInverse:
         self.dtype = np.float64 if real else np.complex128
         shift = self.shift.real if real else self.shift
         shifted = (self.matrix - shift * eye_array(self.size)).astype(self.dtype)
-        # Structure and elimination order are symmetric: small factors.
-        self.factors = splu(
-            shifted.tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.1
-        )
+        self.factors = factorised(shifted.tocsc(), self.work)
         self.operator = LinearOperator(
-            shifted.shape, matvec=self.factors.solve, dtype=self.dtype
+            shifted.shape, matvec=self._solve, dtype=self.dtype
         )
+
+    def _solve(self, right: Any) -> Any:
+        self.work.solved(self.size, self.factors.nnz)
+        return self.factors.solve(right)
 
     def eigenpairs(
         self, n: int, start: Any = None, tolerance: float = 0.0
@@ -61,16 +83,17 @@ class ShiftedInverse:
         Fewer when the matrix is smaller; `start` is a vector near them.
         The tolerance is relative to the distance from the shift, 0 for rounding.
         """
-        if self.dense or n >= self.size - 1:
-            values, vectors = np.linalg.eig(self.matrix.toarray())
-        else:
-            values, vectors = self._arnoldi(n, self._start(start), tolerance)
+        found = None
+        if not self.dense and n < self.size - 1:
+            found = self._arnoldi(n, self._start(start), tolerance)
+        values, vectors = self._all() if found is None else found
         order = np.argsort(np.abs(values - self.shift), kind="stable")[:n]
         return values[order].astype(complex), vectors[:, order].astype(complex)
 
     def distance(self) -> float:
         """Distance of the nearest eigenvalue from the shift, to about one per cent."""
         if self.dense:
+            self.work.diagonalised(self.size)
             values = np.linalg.eigvals(self.matrix.toarray())
             return float(np.abs(values - self.shift).min())
         try:
@@ -92,19 +115,55 @@ class ShiftedInverse:
         real = self.shift.imag == 0
         return (np.real(start) if real else np.asarray(start)).astype(self.dtype)
 
-    def _arnoldi(self, n: int, start: Any, tolerance: float) -> tuple[Complex, Complex]:
+    def _all(self) -> tuple[Complex, Complex]:
+        self.work.diagonalised(self.size)
+        values, vectors = np.linalg.eig(self.matrix.toarray())
+        return values, vectors
+
+    def _arnoldi(
+        self, n: int, start: Any, tolerance: float
+    ) -> tuple[Complex, Complex] | None:
+        """The n largest of the inverse; None if it takes all to be sure of them."""
         for n_krylov in (2 * n + 12, 4 * n + 40, 8 * n + 120):
             n_krylov = min(n_krylov, self.size)
             try:
                 values, vectors = eigs(
-                    self.operator, k=n, ncv=n_krylov, v0=start, tol=tolerance
+                    self.operator,
+                    k=n,
+                    ncv=n_krylov,
+                    v0=start,
+                    tol=tolerance,
+                    maxiter=RESTARTS,
                 )
-            except ArpackNoConvergence as error:
-                values, vectors = error.eigenvalues, error.eigenvectors
-            if len(values) >= n:
-                break
-        shift = self.shift.real if self.shift.imag == 0 else self.shift
-        return shift + 1 / values, vectors
+            except ArpackNoConvergence:
+                # Those that have converged need not be the nearest.
+                if self.size <= SMALL:
+                    break
+                continue
+            shift = self.shift.real if self.shift.imag == 0 else self.shift
+            return shift + 1 / values, vectors
+        return None
+
+
+def factorised(matrix: csc_array, work: Work) -> SuperLU:
+    """L U = the matrix, its rows and columns in an order that leaves few entries."""
+    if few_pivots(matrix):
+        factors = splu(matrix, permc_spec="COLAMD", diag_pivot_thresh=1.0)
+    else:
+        # Structure and elimination order are symmetric: small factors.
+        factors = splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=THRESHOLD)
+    work.factorised(matrix.shape[0], factors.nnz)
+    return factors
+
+
+def few_pivots(matrix: csc_array) -> bool:
+    """Whether a sparse matrix has pivots on its diagonal in too few columns.
+
+    So it is where the noise is small: L is nearly skew then.
+    """
+    largest = np.ravel(abs(matrix).max(axis=0).toarray())
+    small = np.abs(matrix.diagonal()) < THRESHOLD * largest
+    return bool(np.mean(small) > FEW and matrix.nnz < SPARSE * matrix.shape[0])
 
 
 def neighbour(values: Complex, chosen: int | np.integer[Any]) -> complex | None:

@@ -7,6 +7,7 @@ from typing import Any
 from fpsolve.model.laydown import LayDownModel
 from fpsolve.spectral.bases.sectors import Sector
 from fpsolve.spectral.eigen.spectrum import Spectrum, spectrum
+from fpsolve.spectral.work import DEFAULT_WORK
 
 __all__ = ["SpectralGap", "spectral_gap"]
 
@@ -54,7 +55,11 @@ class SpectralGap(float):
 
 
 def spectral_gap(
-    model: LayDownModel, *, tolerance: float = 1e-10, memory_limit: int | None = None
+    model: LayDownModel,
+    *,
+    tolerance: float = 1e-10,
+    memory_limit: int | None = None,
+    work_limit: float = DEFAULT_WORK,
 ) -> SpectralGap:
     """-max {Re λ : λ ≠ 0 in the spectrum of L}: the asymptotic rate of convergence.
 
@@ -69,6 +74,8 @@ def spectral_gap(
     tolerance : float
         Largest error relative to the gap.
     memory_limit : int, optional
+        As for `spectrum`.
+    work_limit : float
         As for `spectrum`.
 
     Returns
@@ -85,5 +92,11 @@ def spectral_gap(
     ----------
     [KMW09]_, section 3.1.1; that there is a gap: [DKMS13]_.
     """
-    found = spectrum(model, 1, tolerance=tolerance, memory_limit=memory_limit)
+    found = spectrum(
+        model,
+        1,
+        tolerance=tolerance,
+        memory_limit=memory_limit,
+        work_limit=work_limit,
+    )
     return SpectralGap.of(found)

@@ -12,7 +12,7 @@ import psutil
 from numpy.typing import NDArray
 
 from fpsolve._support.blas import one_blas_thread
-from fpsolve._support.checks import check_integer, check_real, shown
+from fpsolve._support.checks import check_integer, check_positive, check_real, shown
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.model.laydown import LayDownModel
 from fpsolve.model.potentials.quadratic import QuadraticPotential
@@ -20,6 +20,7 @@ from fpsolve.spectral.bases.choice import check_resolved, discretisation_for
 from fpsolve.spectral.bases.sectors import Discretisation, Sector, Truncation
 from fpsolve.spectral.eigen.refinement import Refinement, left_vector, with_residual
 from fpsolve.spectral.eigen.survey import Mode, Scale
+from fpsolve.spectral.work import DEFAULT_WORK, Work
 
 __all__ = ["Spectrum", "spectrum"]
 
@@ -46,8 +47,8 @@ class Spectrum:
         Rightmost first; both of a complex pair, the one with the positive imaginary
         part first.
     errors : ndarray, shape (n,)
-        Distance to the eigenvalue in the truncation before plus rounding: an
-        overestimate as long as the truncation converges geometrically.
+        Distance to the eigenvalue in the truncation before, times what is still to
+        come if the distances fall slowly, plus rounding.
     residuals : ndarray, shape (n,)
         ‖L f - λ f‖/‖f‖ in L²(μ), computed in the next larger basis, which for a
         quadratic potential holds L f exactly.
@@ -146,6 +147,7 @@ def spectrum(
     tolerance: float = 1e-10,
     sectors: Iterable[Sector] | None = None,
     memory_limit: int | None = None,
+    work_limit: float = DEFAULT_WORK,
 ) -> Spectrum:
     """The rightmost eigenvalues of the generator of (9) in L²(μ), other than 0.
 
@@ -173,6 +175,9 @@ def spectrum(
         Search in these only.
     memory_limit : int, optional
         Bytes for the largest basis; by default 256 MiB or what is available.
+    work_limit : float
+        Entries of factors that may be gone through, about two nanoseconds each. Bases
+        and their number of eigenvalues near the axis grow as the noise falls.
 
     Raises
     ------
@@ -182,7 +187,7 @@ def spectrum(
     MemoryLimitError
         If not even the smallest basis fits.
     ToleranceError
-        If no basis that fits reaches the tolerance.
+        If no basis that fits reaches the tolerance, or none within the work.
 
     References
     ----------
@@ -200,6 +205,7 @@ def spectrum(
         Scale.of(model, essential),
         allowed_memory(memory_limit),
         None if sectors is None else checked_sectors(sectors),
+        Work(check_positive("work_limit", work_limit)),
     )
     modes: list[Mode] = []
     for mode in refinement.run():

@@ -13,6 +13,7 @@ from fpsolve.model.laydown import LayDownModel
 from fpsolve.spectral.bases.choice import orbit_radius
 from fpsolve.spectral.bases.sectors import Discretisation, Sector, Truncation
 from fpsolve.spectral.eigen.eigenvalues import ShiftedInverse, neighbour
+from fpsolve.spectral.work import Work
 
 __all__ = ["Mode", "Scale", "leading", "order", "survey"]
 
@@ -23,6 +24,10 @@ N_NEAREST = 8
 NEAR_ESSENTIAL = 1e-3
 # Share taken of a distance to the spectrum that is known to one per cent.
 EMPTY = 0.9
+# Chords long enough to be content with an empty disc: in units of the frequency of the
+# circular orbit; and, in a strip narrower than NARROW of these units, in units of the
+# last chord that eigenvalues gave, which cost several times as much.
+CHORD, NARROW, WORTH = 0.1, 0.02, 0.25
 # Of the eigenvalues of a survey, relative to their distance from the shift.
 TOLERANCE = 1e-8
 # Found from two shifts, an eigenvalue differs by rounding only.
@@ -45,8 +50,10 @@ class Mode:
         Where the coefficients belong.
     partner : complex or None
         The nearest other eigenvalue, which may be the conjugate.
+    change : float
+        Distance to the eigenvalue of the truncation before.
     error : float
-        Distance to the eigenvalue of the truncation before, plus `rounding`.
+        That times how slowly it falls, plus `rounding`.
     rounding : float
         What rounding may have changed.
     residual : float
@@ -58,6 +65,7 @@ class Mode:
     sector: Sector
     truncation: Truncation
     partner: complex | None = None
+    change: float = math.inf
     error: float = math.inf
     rounding: float = 0.0
     residual: float = math.inf
@@ -112,6 +120,7 @@ def survey(
     n: int,
     scale: Scale,
     sectors: tuple[Sector, ...] | None = None,
+    work: Work | None = None,
 ) -> list[Mode]:
     """The n slowest modes of all sectors, and those up to 15 % faster.
 
@@ -128,7 +137,7 @@ def survey(
     silent = 0
     for sector in discretisation.sectors() if sectors is None else sectors:
         cut = cut_after(modes, n, scale.limit)
-        found = Search(discretisation, sector, truncation, scale).run(n, cut)
+        found = Search(discretisation, sector, truncation, scale, work).run(n, cut)
         modes = slowest(modes + found, n, scale.limit)
         counts = not sector.M or sector.M < 2 or any(mode in modes for mode in found)
         silent = 0 if counts else silent + 1
@@ -182,11 +191,14 @@ class Search:
         sector: Sector,
         truncation: Truncation,
         scale: Scale,
+        work: Work | None = None,
     ) -> None:
         self.sector, self.truncation, self.scale = sector, truncation, scale
+        self.work = work
         self.on_edge = getattr(discretisation, "on_edge", None)
         self.matrix: csc_array = discretisation.matrix(sector, *truncation)
         self.modes: list[Mode] = []
+        self.chord = math.inf
 
     def run(self, n: int, cut: float) -> list[Mode]:
         """The modes up to the cut or, if that is less, a little beyond the n-th."""
@@ -214,12 +226,12 @@ class Search:
         """Search around one shift; half the length of the strip that it covers."""
         # In the middle of the strip, once it is known how wide it is.
         middle = 0.1 * self.scale.rate if math.isinf(self.cut) else -self.cut / 2
-        inverse = ShiftedInverse(self.matrix, complex(middle, frequency))
+        inverse = ShiftedInverse(self.matrix, complex(middle, frequency), self.work)
         if math.isfinite(self.cut) and (frequency > 0 or not self.sector.has_constants):
             # Most of the axis is far from everything, which is seen at little cost.
             empty, reach = EMPTY * inverse.distance(), self.cut / 2
             chord = math.sqrt(max(empty**2 - reach**2, 0.0))
-            if chord > 0.1 * min(self.scale.frequency, 3 * frequency):
+            if chord > self.long_enough(frequency):
                 return chord
         n_nearest = N_NEAREST
         while True:
@@ -234,8 +246,15 @@ class Search:
             # The part of the strip that is furthest from the shift.
             reach = max(self.cut + middle, abs(middle))
             if math.isfinite(self.cut) and radius > reach * (1 + 1e-3):
-                return math.sqrt(radius**2 - reach**2)
+                self.chord = math.sqrt(radius**2 - reach**2)
+                return self.chord
             n_nearest *= 2
+
+    def long_enough(self, frequency: float) -> float:
+        """A chord that the nearest eigenvalues would not lengthen enough."""
+        unit = self.scale.frequency
+        usual = CHORD * min(unit, 3 * frequency)
+        return min(usual, WORTH * self.chord) if self.cut < NARROW * unit else usual
 
     def spurious(self, vector: NDArray[np.complex128]) -> bool:
         """Whether an eigenvector belongs to the truncation and not to L."""

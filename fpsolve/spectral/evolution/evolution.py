@@ -12,12 +12,14 @@ from numpy.typing import ArrayLike, NDArray
 
 from fpsolve._support.arrays import check_numbers
 from fpsolve._support.blas import one_blas_thread
+from fpsolve._support.checks import check_positive
 from fpsolve._support.memory import allowed_memory
-from fpsolve.errors import MemoryLimitError, ToleranceError
+from fpsolve.errors import MemoryLimitError
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.grids.row_sums import MOMENTS
 from fpsolve.model.laydown import LayDownModel
 from fpsolve.model.potentials.quadratic import QuadraticPotential
+from fpsolve.spectral.agreement import excess, failure
 from fpsolve.spectral.evolution import quadrature
 from fpsolve.spectral.evolution.expansion import Expansion, spread
 from fpsolve.spectral.evolution.exponential import ForwardOperator
@@ -28,6 +30,7 @@ from fpsolve.spectral.evolution.quadratic import (
     quadratic,
 )
 from fpsolve.spectral.evolution.solution import SpectralSolution
+from fpsolve.spectral.work import OutOfWork, Work
 
 __all__ = ["spectral_solve"]
 
@@ -46,6 +49,10 @@ WIDER = 1.5
 SHARE = 1e-4
 # The same for the quadrature of the entropy.
 SHARE_OF_ENTROPY = 0.1
+# Work that is allowed unless told otherwise: about a minute.
+DEFAULT_WORK = 3e10
+# As an expansion spreads, its steps may become cheaper and longer by no more than this.
+CHEAPER = 1e-4
 # Coefficient arrays alive at a time: three of the recurrence, the start, a copy.
 ARRAYS = 5
 
@@ -58,6 +65,7 @@ def spectral_solve(
     *,
     tolerance: float = 1e-8,
     memory_limit: int | None = None,
+    work_limit: float = DEFAULT_WORK,
 ) -> SpectralSolution:
     """H(p|p_S) and moments at s, for B quadratic, by expansion in Hermite × Fourier.
 
@@ -85,6 +93,9 @@ def spectral_solve(
         Largest error of each number, relative where the number is above one.
     memory_limit : int, optional
         Bytes; by default what the machine has available.
+    work_limit : float
+        Coefficients that may be gone through, about two nanoseconds each: with little
+        noise they become many, with much noise the steps.
 
     Returns
     -------
@@ -101,7 +112,7 @@ def spectral_solve(
     MemoryLimitError
         If not even the two coarsest truncations fit.
     ToleranceError
-        If the tolerance is not reached within the memory or after five refinements.
+        If the tolerance is not reached within the memory, the work or five refinements.
 
     References
     ----------
@@ -112,20 +123,25 @@ def spectral_solve(
     stops = checked_arclengths(s)
     start = start_of(p0, quadratic(model), tolerance)
     budget = allowed_memory(memory_limit)
-    coarse = run(model, start, stops, level(0, tolerance, budget, stops.size))
-    for refinement in range(1, LEVELS):
-        try:
-            finer = level(refinement, tolerance, budget, stops.size)
-        except MemoryLimitError:
-            if refinement == 1:
-                raise
-            break
-        fine = run(model, start, stops, finer)
-        result = compared(model, stops, coarse, fine, tolerance)
-        if excess(result) <= 1:
-            return result
-        coarse = fine
-    raise ToleranceError(excess(result) * tolerance, tolerance, remedy(result))
+    work = Work(check_positive("work_limit", work_limit))
+    result: SpectralSolution | None = None
+    try:
+        coarse = run(model, start, stops, level(0, tolerance, budget, stops.size), work)
+        for refinement in range(1, LEVELS):
+            try:
+                finer = level(refinement, tolerance, budget, stops.size)
+            except MemoryLimitError:
+                if refinement == 1:
+                    raise
+                break
+            fine = run(model, start, stops, finer, work)
+            result = compared(model, stops, coarse, fine, tolerance)
+            if excess(result) <= 1:
+                return result
+            coarse = fine
+    except OutOfWork:
+        pass
+    raise failure(result, model, work, tolerance)
 
 
 @dataclass(frozen=True)
@@ -161,12 +177,16 @@ def level(refinement: int, tolerance: float, budget: float, n_stops: int) -> Lev
 
 
 def run(
-    model: LayDownModel, start: GaussianStart | DensityStart, stops: Array, level: Level
+    model: LayDownModel,
+    start: GaussianStart | DensityStart,
+    stops: Array,
+    level: Level,
+    work: Work,
 ) -> Run:
     """Evolve the start to every stop within one truncation."""
     potential = quadratic(model)
     found, rows, doubts = [], [], []
-    for s, h in zip(stops, evolve(model, start, stops, level), strict=True):
+    for s, h in zip(stops, evolve(model, start, stops, level, work), strict=True):
         entropy, doubt = quadrature.relative_entropy(
             h, SHARE_OF_ENTROPY * level.neglected
         )
@@ -181,7 +201,11 @@ def run(
 
 
 def evolve(
-    model: LayDownModel, start: GaussianStart | DensityStart, stops: Array, level: Level
+    model: LayDownModel,
+    start: GaussianStart | DensityStart,
+    stops: Array,
+    level: Level,
+    work: Work,
 ) -> Iterator[Expansion]:
     """The expansion at every stop, its limits following what is significant."""
     operator = ForwardOperator(model)
@@ -189,18 +213,22 @@ def evolve(
     reached = 0.0
     for stop in stops:
         while reached < stop:
-            ds = min(operator.longest(h.limits), stop - reached)
-            h = step(operator, h, ds, level)
+            ds, before = min(operator.longest(h.limits), stop - reached), work.spent
+            h = step(operator, h, ds, level, work)
+            left = (stops[-1] - reached) / ds
+            work.foresee(CHEAPER * left * (work.spent - before))
             reached = stop if stop - reached - ds <= 1e-13 * stop else reached + ds
         # A copy without the room that the next step needs.
         yield fitted(h, level, 0)
 
 
-def step(operator: ForwardOperator, h: Expansion, ds: float, level: Level) -> Expansion:
+def step(
+    operator: ForwardOperator, h: Expansion, ds: float, level: Level, work: Work
+) -> Expansion:
     """One step, repeated with more room while the expansion runs into its limits."""
     margin = MARGIN
     while True:
-        moved = operator.advance(h, ds, SHARE * level.neglected)
+        moved = operator.advance(h, ds, SHARE * level.neglected, work)
         needed = limits_of(moved, level, NEEDED)
         n = max(needed.size, h.limits.size)
         if np.all(padded(needed, n) <= padded(h.limits, n)):
@@ -241,33 +269,6 @@ def compared(
     return SpectralSolution(
         model, stops, fine.series, errors, truncation, tolerance, fine.expansions
     )
-
-
-def excess(result: SpectralSolution) -> float:
-    """Largest error over what is allowed."""
-    return (
-        max(
-            float(np.max(errors / np.maximum(1.0, np.abs(result.series[name]))))
-            for name, errors in result.errors.items()
-        )
-        / result.tolerance
-    )
-
-
-def remedy(result: SpectralSolution) -> str:
-    """What would help, by where the errors are."""
-    worst = np.max(
-        [
-            errors / np.maximum(1.0, np.abs(result.series[name]))
-            for name, errors in result.errors.items()
-        ],
-        axis=0,
-    )
-    met = worst <= result.tolerance
-    if met[-1]:
-        first = result.s[int(np.flatnonzero(~met)[-1]) + 1]
-        return f"it is reached from s = {first:g} on; ask for later `s`"
-    return "raise `memory_limit` or `tolerance`, or start from a wider density"
 
 
 def start_of(

@@ -12,6 +12,7 @@ from scipy.special import ive, jv
 from fpsolve._kernels.ladder import apply_ladder
 from fpsolve.model.laydown import LayDownModel
 from fpsolve.spectral.evolution.expansion import Expansion, Limits
+from fpsolve.spectral.work import Work
 
 __all__ = ["ForwardOperator"]
 
@@ -77,14 +78,19 @@ class ForwardOperator:
         flatness = min(real / imaginary, FLATTER)
         return max(REACH / (real + imaginary), GROWTH * flatness**2 / real)
 
-    def advance(self, start: Expansion, ds: float, tolerance: float) -> Expansion:
+    def advance(
+        self, start: Expansion, ds: float, tolerance: float, work: Work | None = None
+    ) -> Expansion:
         """e^{ds L*} of an expansion within its limits, to `tolerance` in L²(μ)."""
         n_steps = math.ceil(ds / self.longest(start.limits))
+        work = Work() if work is None else work
         for _ in range(n_steps):
-            start = self._series(start, ds / n_steps, tolerance / n_steps)
+            start = self._series(start, ds / n_steps, tolerance / n_steps, work)
         return start
 
-    def _series(self, start: Expansion, ds: float, tolerance: float) -> Expansion:
+    def _series(
+        self, start: Expansion, ds: float, tolerance: float, work: Work
+    ) -> Expansion:
         """Σ a_n U_n with U_{n+1} = 2 X U_n − sign U_{n−1}, X = (L* − centre)/focus.
 
         Foci on the real axis (sign 1) take modified Bessel functions as coefficients,
@@ -104,6 +110,7 @@ class ForwardOperator:
         self._apply(older, newer, start.limits, gain, centre, 0.0)
         total.values[...] += coefficients[1] * newer
         for n in range(2, coefficients.size):
+            work.applied(start.n_coefficients)
             apply_ladder(
                 newer, start.limits, *self.numbers, 2 * gain, -2 * gain * centre,
                 older, -sign, coefficients[n], total.values,

@@ -146,14 +146,20 @@ def spectral_steady_state(
     tolerance = checked_tolerance(tolerance)
     memory_limit = check_tolerance("memory_limit", memory_limit)
     degree, reached = DEGREE, np.inf
+    remedy = "raise `memory_limit` or `tolerance`"
     coarse = stationary(model, truncation_limits(degree))
     while True:
         degree = round(RATIO * degree)
         limits = truncation_limits(degree)
         if memory_of(limits) > memory_limit:
-            remedy = "raise `memory_limit` or `tolerance`"
             raise ToleranceError(float(reached), tolerance, remedy)
         fine = stationary(model, limits)
+        if not (np.isfinite(coarse.values).all() and np.isfinite(fine.values).all()):
+            remedy = (
+                f"at noise {model.noise:g} its coefficients grow beyond all numbers: "
+                "choose another noise or use `steady_state`"
+            )
+            raise ToleranceError(np.inf, tolerance, remedy)
         result = compared(model, coarse, fine)
         reached = max(
             error / max(1.0, abs(result.moments[name]))
@@ -261,6 +267,9 @@ def eliminate(matrix: sparse.csr_array, offsets: NDArray[np.int64]) -> Array:
     factors: list[Any] = []
     carried: list[Array] = []
     for n, here in enumerate(blocks):
+        # Too large a number anywhere leaves none in the solution that is one.
+        if n and not np.isfinite(carried[-1]).all():
+            return np.full(matrix.shape[0] + 1, np.nan)
         diagonal = matrix[here, here].toarray()
         source = right[here]
         if n:

@@ -18,7 +18,11 @@ from fpsolve.spectral.eigen.gap import spectral_gap
 from fpsolve.spectral.eigen.spectrum import Spectrum, spectrum
 from fpsolve.spectral.evolution.evolution import spectral_solve
 from fpsolve.studies.observables import Observable, equilibrium_moments
-from fpsolve.studies.rates.poisson import asymptotic_variances
+from fpsolve.studies.rates.poisson import (
+    asymptotic_variances,
+    estimated_variances,
+    known_only,
+)
 from fpsolve.studies.rates.relaxation import plan_relaxation, relaxation_case
 
 __all__ = ["PARTS", "rate_case", "sectors_shown"]
@@ -30,6 +34,8 @@ _PER_SECTOR = 2
 # Bytes for a branch, which is a few seconds; less where an essential spectrum lets
 # modes reach so far out that bases grow at length.
 _MEMORY, _MEMORY_ESSENTIAL = 2**26, 2**23
+# Work for the gap, about a minute.
+_WORK = 3e10
 # Panels of the quadrature of H(s): the first, how fast they grow, nodes in each.
 _FIRST_PANEL, _GROWTH, _NODES = 0.25, 1.5, 7
 
@@ -48,7 +54,8 @@ def sectors_shown(potential: Potential) -> list[Sector]:
 
 def gap_case(potential: Potential, noise: float, tolerance: float) -> Mapping[str, Any]:
     """The spectral gap, over all sectors."""
-    gap = spectral_gap(LayDownModel(potential, noise), tolerance=tolerance)
+    model = LayDownModel(potential, noise)
+    gap = spectral_gap(model, tolerance=tolerance, work_limit=_WORK)
     return {
         "gap": float(gap),
         "gap_error": gap.error,
@@ -106,9 +113,14 @@ def variance_case(
     tolerance: float,
     functions: Mapping[str, Observable],
 ) -> Mapping[str, Any]:
-    """Asymptotic variances of averages over those of the functions."""
+    """Asymptotic variances of averages over those of the functions.
+
+    NaN where nothing is known; ToleranceError where that is so of all.
+    """
     model = LayDownModel(potential, noise)
-    found = asymptotic_variances(model, functions, tolerance=tolerance)
+    found = known_only(estimated_variances(model, functions, tolerance))
+    if np.isnan(found.values).all():
+        found = asymptotic_variances(model, functions, tolerance=tolerance)
     scale = equilibrium_moments(potential, functions).deviation ** 2
     return {
         "asymptotic_variance": found.values / scale,

@@ -2,38 +2,36 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
-from typing import Any, Protocol
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
-from numpy.polynomial.hermite_e import hermegauss
 from numpy.typing import NDArray
 from scipy.sparse import block_array, csc_array
-from scipy.sparse.linalg import splu
 
 from fpsolve._support.blas import one_blas_thread
+from fpsolve.errors import ToleranceError
 from fpsolve.model.laydown import LayDownModel, check_model
-from fpsolve.model.potentials.quadratic import QuadraticPotential
-from fpsolve.spectral.bases.radial import RadialDiscretisation
-from fpsolve.spectral.bases.radial_basis import radial_basis
-from fpsolve.spectral.bases.sectors import Sector, Truncation
-from fpsolve.spectral.bases.tensor import (
-    TensorDiscretisation,
-    TensorStates,
-    hermite_functions,
-)
+from fpsolve.spectral.bases.sectors import Truncation
+from fpsolve.spectral.eigen.eigenvalues import factorised
+from fpsolve.spectral.eigen.refinement import slowness
 from fpsolve.spectral.evolution.quadratic import checked_tolerance
+from fpsolve.spectral.work import DEFAULT_WORK, OutOfWork, Work
 from fpsolve.studies.arguments import check_functions
 from fpsolve.studies.observables import Observable
+from fpsolve.studies.rates.poisson_bases import Basis, basis_for
 
-__all__ = ["AsymptoticVariances", "asymptotic_variances"]
+__all__ = [
+    "AsymptoticVariances",
+    "asymptotic_variances",
+    "estimated_variances",
+    "known_only",
+]
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
-# Angles in which functions are sampled, and harmonics of theirs that are used.
-_ANGLES, _HARMONICS = 64, 16
 # Parts of a function below this share of it are rounding.
 _SILENT = 1e-12
 # Truncations that are tried, and the most functions of a sector.
@@ -43,6 +41,8 @@ _TRUNCATIONS = tuple(
 _LARGEST = 20_000
 # A variance below this share of ‖f‖² times the relaxation length is zero.
 _ZERO = 1e-12
+# A number whose error is more than this share of it is not known at all.
+_UNKNOWN = 0.5
 
 
 @dataclass(frozen=True)
@@ -52,7 +52,8 @@ class AsymptoticVariances:
     Attributes
     ----------
     values, errors : ndarray, shape (n_functions,)
-        The error is the change from the next smaller basis.
+        The error is the change from the next smaller basis, times what is still to
+        come if the changes fall slowly.
     deviations : ndarray, shape (n_functions,)
         ‖f − E f‖ in L²(μ), as the basis holds it.
     truncation : Truncation
@@ -75,7 +76,8 @@ def asymptotic_variances(
 
     L u = f − E f is solved in the bases of `fpsolve.spectral`, for growing bases until
     v stands still, or the largest is reached: look at the errors. At small noise u
-    winds up and needs ever larger ones.
+    winds up and needs ever larger ones; a value that is unknown by half of it is
+    refused.
 
     Parameters
     ----------
@@ -91,6 +93,8 @@ def asymptotic_variances(
     ------
     ValueError
         If the belt moves, the noise is zero, or the potential has no basis.
+    ToleranceError
+        If the largest basis tells nothing about one of the values.
 
     References
     ----------
@@ -104,59 +108,62 @@ def asymptotic_variances(
             "`model` must have a fixed belt for asymptotic variances, got "
             f"{model.curve!r}."
         )
-    basis = _basis_for(model)
-    before, errors = None, np.full(len(functions), np.inf)
+    found = estimated_variances(model, functions, tolerance)
+    unknown = _unknown(found)
+    if unknown.any():
+        names = [name for name, one in zip(functions, unknown, strict=True) if one]
+        worst = float(np.max(found.errors[unknown] / np.abs(found.values[unknown])))
+        raise ToleranceError(
+            worst,
+            tolerance,
+            f"at noise {model.noise:g} no basis that fits resolves the variance of "
+            f"{', '.join(names)}: choose a larger noise, or average along paths",
+        )
+    return found
+
+
+def estimated_variances(
+    model: LayDownModel, functions: Mapping[str, Observable], tolerance: float
+) -> AsymptoticVariances:
+    """The variances in the largest basis needed or possible, whatever the errors."""
+    basis, work = basis_for(model), Work(DEFAULT_WORK)
+    result: AsymptoticVariances | None = None
+    changes = np.full(len(functions), np.inf)
     for truncation in _TRUNCATIONS:
-        if before is not None and basis.size(truncation) > _LARGEST:
+        if result is not None and basis.size(truncation) > _LARGEST:
             break
-        reached = truncation
-        found = np.array([_variance(basis, f, truncation) for f in functions.values()])
-        values, deviations = found.T
-        if before is not None:
-            errors = np.abs(values - before)
-            if np.all(errors <= tolerance * values + _ZERO * deviations**2):
-                break
-        before = values
-    return AsymptoticVariances(values, errors, deviations, reached)
+        try:
+            pairs = [_variance(basis, f, truncation, work) for f in functions.values()]
+        except OutOfWork:
+            break
+        values, deviations = np.array(pairs).T
+        errors = np.full(len(functions), np.inf)
+        if result is not None:
+            last, changes = changes, np.abs(values - result.values)
+            errors = changes * np.array(list(map(slowness, changes, last)))
+        result = AsymptoticVariances(values, errors, deviations, truncation)
+        if np.all(errors <= tolerance * values + _ZERO * deviations**2):
+            break
+    assert result is not None
+    return result
 
 
-class _Basis(Protocol):
-    """Parts of a function in the invariant subspaces, and the generator there."""
-
-    def parts(
-        self, f: Observable, truncation: Truncation
-    ) -> Iterator[tuple[Sector, int, Array | Complex]]:
-        """Sectors, how often each counts, and coefficients."""
-        ...
-
-    def size(self, truncation: Truncation) -> int:
-        """Functions in the sector of the constants."""
-        ...
-
-    def matrix(self, sector: Sector, truncation: Truncation) -> csc_array:
-        """The generator on a sector."""
-        ...
-
-    def kernel(self, sector: Sector, truncation: Truncation) -> Array | None:
-        """Orthonormal columns that span the kernel of the matrix, or None."""
-        ...
+def _unknown(found: AsymptoticVariances) -> NDArray[np.bool_]:
+    """Which values their errors leave nothing of, and which are not zero either."""
+    allowed = _UNKNOWN * np.abs(found.values) + _ZERO * found.deviations**2
+    return np.asarray(~(found.errors <= allowed))
 
 
-def _basis_for(model: LayDownModel) -> _Basis:
-    potential, noise = model.potential, model.noise
-    if potential.isotropic:
-        return _RadialBasis(RadialDiscretisation(potential, noise))
-    if isinstance(potential, QuadraticPotential):
-        sigmas = potential.sigma1, potential.sigma2
-        return _TensorBasis(TensorDiscretisation(*sigmas, noise))
-    raise ValueError(
-        f"`potential` must be isotropic or quadratic, got {potential!r}; average along "
-        "paths instead."
-    )
+def known_only(found: AsymptoticVariances) -> AsymptoticVariances:
+    """The variances with NaN for those that are not known at all."""
+    unknown = _unknown(found)
+    values, errors = found.values.copy(), found.errors.copy()
+    values[unknown] = errors[unknown] = np.nan
+    return replace(found, values=values, errors=errors)
 
 
 def _variance(
-    basis: _Basis, f: Observable, truncation: Truncation
+    basis: Basis, f: Observable, truncation: Truncation, work: Work
 ) -> tuple[float, float]:
     """v and ‖f − E f‖ in one basis."""
     variance = square = 0.0
@@ -169,135 +176,21 @@ def _variance(
         kernel = basis.kernel(sector, truncation)
         if kernel is not None:
             part = part - kernel @ (kernel.T @ part)
-        solution = _solved(matrix, kernel, part)
+        solution = _solved(matrix, kernel, part, work)
         variance -= 2 * count * float(np.vdot(part, solution).real)
         square += count * float(np.vdot(part, part).real)
     return variance, float(np.sqrt(square))
 
 
-def _solved(matrix: csc_array, kernel: Array | None, right: Any) -> Any:
+def _solved(matrix: csc_array, kernel: Array | None, right: Any, work: Work) -> Any:
     """U with L u = right, orthogonal to the kernel."""
     n = len(right)
     if kernel is not None:
         columns = csc_array(kernel)
         matrix = block_array([[matrix, columns], [columns.T, None]], format="csc")
         right = np.append(right, np.zeros(kernel.shape[1]))
-    factors = splu(matrix.tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.1)
+    factors = factorised(matrix.tocsc(), work)
     solution = factors.solve(right.real).astype(complex)
     if np.iscomplexobj(right):
         solution += 1j * factors.solve(right.imag)
     return solution[:n]
-
-
-@dataclass(frozen=True)
-class _RadialBasis:
-    """Isotropic potentials: sectors M >= 0; f is real, so that −M only doubles."""
-
-    discretisation: RadialDiscretisation
-
-    def parts(
-        self, f: Observable, truncation: Truncation
-    ) -> Iterator[tuple[Sector, int, Complex]]:
-        basis = radial_basis(self.discretisation.potential, truncation.degree)
-        weight = np.exp(0.5 * basis.rule.log_weight)
-        modes = _angular_modes(f, basis.rule.r) * weight[:, None, None]
-        for M in _indices_of(modes):
-            harmonics = self.discretisation.harmonics(Sector(M), truncation)
-            blocks: list[Any] = [np.zeros(0)]
-            for k, n in zip(*np.unique(harmonics, return_counts=True), strict=True):
-                angular = M - int(k)
-                seen = abs(angular) <= _HARMONICS and abs(k) <= _HARMONICS
-                column = modes[:, angular, k] if seen else np.zeros(len(weight))
-                functions, _ = basis.weighted(angular, truncation.degree)
-                blocks.append(functions[:n] @ column)
-            yield Sector(M), 2 if M else 1, np.concatenate(blocks)
-
-    def size(self, truncation: Truncation) -> int:
-        return int(self.discretisation.harmonics(Sector(0), truncation).size)
-
-    def matrix(self, sector: Sector, truncation: Truncation) -> csc_array:
-        return self.discretisation.matrix(sector, *truncation)
-
-    def kernel(self, sector: Sector, truncation: Truncation) -> Array | None:
-        if sector.M:
-            return None
-        # The constants, or what comes nearest to them in a basis that grows outwards.
-        basis = radial_basis(self.discretisation.potential, truncation.degree)
-        _, _, right = np.linalg.svd(basis.raising(0, 0, truncation.degree))
-        kernel = np.zeros((self.discretisation.harmonics(sector, truncation).size, 1))
-        kernel[self.discretisation.harmonics(sector, truncation) == 0, 0] = right[-1]
-        return kernel
-
-
-def _indices_of(modes: Complex) -> list[int]:
-    """M = l + k >= 0 of the modes that are not rounding."""
-    norms = np.linalg.norm(modes, axis=0)
-    used = np.arange(-_HARMONICS, _HARMONICS + 1)
-    found = {
-        int(angular + k)
-        for angular in used
-        for k in used
-        if norms[angular, k] > _SILENT * norms.max()
-    }
-    return sorted(M for M in found if M >= 0)
-
-
-def _angular_modes(f: Observable, r: Array) -> Complex:
-    """Means of f exp(−ilφ − ikα) over φ and α, indexed [r, l, k]."""
-    angles = np.arange(_ANGLES) * (2 * np.pi / _ANGLES)
-    xi1 = r[:, None, None] * np.cos(angles)[:, None]
-    xi2 = r[:, None, None] * np.sin(angles)[:, None]
-    shape = (len(r), _ANGLES, _ANGLES)
-    with np.errstate(under="ignore"):
-        values = np.broadcast_to(np.asarray(f(xi1, xi2, angles), float), shape)
-    return np.asarray(np.fft.fft2(values, axes=(1, 2)) / _ANGLES**2)
-
-
-@dataclass(frozen=True)
-class _TensorBasis:
-    """Quadratic potentials with σ1 ≠ σ2: four sectors."""
-
-    discretisation: TensorDiscretisation
-
-    def parts(
-        self, f: Observable, truncation: Truncation
-    ) -> Iterator[tuple[Sector, int, Array]]:
-        cosines, sines = self.tables(f, truncation)
-        for sector in self.discretisation.sectors():
-            states = TensorStates(sector, truncation)
-            where = states.m, states.n, states.k
-            yield sector, 1, np.where(states.cosine, cosines[where], sines[where])
-
-    def tables(self, f: Observable, truncation: Truncation) -> tuple[Array, Array]:
-        """⟨f, he_m he_n √2 cos kα⟩ and with sin, indexed [m, n, k]."""
-        degree, harmonics = truncation
-        places, weights = hermegauss(min(2 * degree, 180))
-        weights = weights / weights.sum()
-        table = hermite_functions(degree, places) * weights
-        angles = np.arange(_ANGLES) * (2 * np.pi / _ANGLES)
-        xi1 = self.discretisation.sigma1 * places[:, None, None]
-        xi2 = self.discretisation.sigma2 * places[:, None]
-        shape = (len(places), len(places), _ANGLES)
-        with np.errstate(under="ignore"):
-            values = np.broadcast_to(np.asarray(f(xi1, xi2, angles), float), shape)
-        modes = np.zeros((degree + 1, degree + 1, harmonics + 1), complex)
-        seen = min(harmonics, _HARMONICS) + 1
-        waves = np.fft.rfft(values, axis=2)[:, :, :seen] / _ANGLES
-        modes[:, :, :seen] = np.einsum("mi,ijk,nj->mnk", table, waves, table,
-                                       optimize=True)  # fmt: skip
-        scale = np.where(np.arange(harmonics + 1) == 0, 1.0, np.sqrt(2.0))
-        return scale * modes.real, -scale * modes.imag
-
-    def size(self, truncation: Truncation) -> int:
-        # Factors of these three-dimensional matrices fill up more.
-        return 2 * len(TensorStates(next(self.discretisation.sectors()), truncation).k)
-
-    def matrix(self, sector: Sector, truncation: Truncation) -> csc_array:
-        return self.discretisation.matrix(sector, *truncation)
-
-    def kernel(self, sector: Sector, truncation: Truncation) -> Array | None:
-        if not sector.has_constants:
-            return None
-        one = np.zeros((len(TensorStates(sector, truncation).k), 1))
-        one[0] = 1.0
-        return one

@@ -61,7 +61,7 @@ def figures(rng: Any) -> list[str]:
 def spectrum_words(rng: Any, notes: Any) -> None:
     """`fpsolve spectrum`: the gap that is printed is at most A²/2 for isotropic B."""
     words = ["spectrum", *potential_words(rng), *figures(rng)]
-    noise = number(rng, log_between(rng, 0.5, 4.0))
+    noise = number(rng, log_between(rng, 0.05, 4.0))
     words += ["--noise", noise, "--tolerance", number(rng, 1e-4)]
     words += ["--count", number(rng, int(rng.integers(1, 6)))]
     belt = rng.random() < 0.3

@@ -44,7 +44,7 @@ def variances_of_averages(rng: Any, notes: Any) -> None:
 def gaps_in_studies(rng: Any, notes: Any) -> None:
     """`rate_versus_noise`: the gap is that of `spectral_gap`, at most A²/2."""
     base = isotropic(rng, own=False)
-    noises = sorted({log_between(rng, 0.5, 4.0) for _ in range(2)})
+    noises = sorted({log_between(rng, 0.2, 4.0) for _ in range(2)})
     notes.say(
         f"rate_versus_noise({shown(base)}, {noises}, parts=('gap',), quick=True, "
         "workers=0)"

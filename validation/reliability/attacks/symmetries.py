@@ -239,7 +239,7 @@ def gaps_scale(rng: Any, notes: Any) -> None:
         if rng.random() < 0.6
         else fp.QuadraticPotential(between(rng, 0.7, 1.4), between(rng, 0.7, 1.4))
     )
-    model = fp.LayDownModel(base, between(rng, 0.5, 4.0))
+    model = fp.LayDownModel(base, between(rng, 0.3, 4.0))
     sigma = 4.0 ** one_of(rng, *POWERS)
     notes.say(f"spectral_gap({shown(model)}, tolerance=1e-5), scaled by {sigma:g}")
     gap = fp.spectral_gap(model, tolerance=1e-5)

@@ -1,0 +1,56 @@
+"""How far the truncations of an evolution agree, and what would help them."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from fpsolve.errors import ToleranceError
+from fpsolve.model.laydown import LayDownModel
+from fpsolve.spectral.evolution.solution import SpectralSolution
+from fpsolve.spectral.work import Work
+
+__all__ = ["excess", "failure"]
+
+
+def excess(result: SpectralSolution) -> float:
+    """Largest error over what is allowed."""
+    return (
+        max(
+            float(np.max(errors / np.maximum(1.0, np.abs(result.series[name]))))
+            for name, errors in result.errors.items()
+        )
+        / result.tolerance
+    )
+
+
+def remedy(result: SpectralSolution) -> str:
+    """What would help, by where the errors are."""
+    worst = np.max(
+        [
+            errors / np.maximum(1.0, np.abs(result.series[name]))
+            for name, errors in result.errors.items()
+        ],
+        axis=0,
+    )
+    met = worst <= result.tolerance
+    if met[-1]:
+        first = result.s[int(np.flatnonzero(~met)[-1]) + 1]
+        return f"it is reached from s = {first:g} on; ask for later `s`"
+    return "raise `memory_limit` or `tolerance`, or start from a wider density"
+
+
+def failure(
+    result: SpectralSolution | None, model: LayDownModel, work: Work, tolerance: float
+) -> ToleranceError:
+    """How far the best result is from the tolerance, and what would help."""
+    reached = math.inf if result is None else excess(result) * tolerance
+    helps = "" if result is None else remedy(result)
+    if work.required:
+        helps = (
+            f"at noise {model.noise:g} it takes work of {work.required:.2g} or more, "
+            f"where {work.allowed:.2g} is allowed: ask for earlier `s`, enlarge "
+            "`tolerance`, raise `work_limit` or use `solve`"
+        )
+    return ToleranceError(reached, tolerance, helps)
