@@ -105,7 +105,8 @@ def test_every_file_the_readme_links_to_exists():
 
 
 @pytest.mark.parametrize(
-    "section", ["potential", "curve", "operator", "scheme", "diagnostic", "study"]
+    "section",
+    ["potential", "curve", "operator", "scheme", "diagnostic", "study", "command"],
 )
 def test_every_extension_shown_is_shorter_than_thirty_lines(section):
     source = (ROOT / "docs/extending.md").read_text("utf-8")

@@ -6,6 +6,7 @@ Whatever takes long to import is imported by the command that needs it, so that
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Annotated
 
 import typer
@@ -34,19 +35,24 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
 )
-app.command(epilog="Example: fpsolve run --example spunbond --out results")(run)
-app.command(epilog="Example: fpsolve resume results/laydown.checkpoint")(resume)
-app.command(epilog="Example: fpsolve paths --n-paths 10000 --out results")(paths)
-app.command(epilog="Example: fpsolve check --n-paths 100000 --out results")(check)
-app.command(epilog="Example: fpsolve rate --quick --out results")(rate)
-app.command(epilog="Example: fpsolve spectrum --potential linear --noise 0.8")(spectrum)
-app.command(epilog="Example: fpsolve energy --noise 0.3 --passage 0.1 0.5")(energy)
-app.command(epilog="Example: fpsolve limits small-noise --quick")(limits)
-app.command(epilog="Example: fpsolve plot results/laydown.nc --movie")(plot)
-app.command(epilog="Example: fpsolve report results/laydown.nc")(report)
-app.command(epilog="Example: fpsolve rerun results/laydown.nc --out again")(rerun)
-app.command(epilog="Example: fpsolve compare results/a.nc results/b.nc")(compare)
-app.command(epilog="Example: fpsolve info")(info)
+# Every command with an example of its use.
+_COMMANDS: dict[Callable[..., None], str] = {
+    run: "run --example spunbond --out results",
+    resume: "resume results/laydown.checkpoint",
+    paths: "paths --n-paths 10000 --out results",
+    check: "check --n-paths 100000 --out results",
+    rate: "rate --quick --out results",
+    spectrum: "spectrum --potential linear --noise 0.8",
+    energy: "energy --noise 0.3 --passage 0.1 0.5",
+    limits: "limits small-noise --quick",
+    plot: "plot results/laydown.nc --movie",
+    report: "report results/laydown.nc",
+    rerun: "rerun results/laydown.nc --out again",
+    compare: "compare results/a.nc results/b.nc",
+    info: "info",
+}
+for _command, _example in _COMMANDS.items():
+    app.command(epilog=f"Example: fpsolve {_example}")(_command)
 
 
 def _show_version(wanted: bool) -> None:

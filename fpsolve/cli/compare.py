@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from fpsolve.cli.errors import FAILED, reported_errors
-from fpsolve.cli.run import NoFigures
+from fpsolve.cli.console import print_lines, print_table
+from fpsolve.cli.errors import FAILED
+from fpsolve.cli.frame import command
+from fpsolve.cli.options import NoFigures
 
 if TYPE_CHECKING:
     from fpsolve.results.compare.comparison import Comparison
@@ -50,19 +52,19 @@ def compare(
     and writes a figure of them. The exit code is 0 if both are equal, or within the
     tolerance, and 1 if they are not.
     """
-    with reported_errors():
-        from fpsolve.results.compare.comparing import (
-            compare as compare_results,
-        )
+    with command(figures=not no_figures) as frame:
+        from fpsolve._support.checks import check_positive
+        from fpsolve.plotting.differences import plot_comparison
+        from fpsolve.results.compare.comparing import compare as compare_results
 
         if tolerance is not None:
-            from fpsolve._support.checks import check_positive
-
             check_positive("--tolerance", tolerance)
         found = compare_results(a, b)
         print_comparison(found)
-        if found.differing and not no_figures:
-            typer.echo(_draw(found, a, b, b.parent if out is None else out))
+        if found.differing:
+            frame.out = b.parent if out is None else out
+            name = f"{a.stem}-{b.stem}-difference.png"
+            frame.figure(plot_comparison, found, name=name)
         if tolerance is not None:
             inside = "within" if found.within(tolerance) else "beyond"
             typer.echo(f"{inside} {tolerance:g} of the largest value of each variable")
@@ -72,32 +74,25 @@ def compare(
 
 def print_comparison(comparison: Comparison) -> None:
     """Print the verdict, a row for every variable that differs, and what else does."""
-    from rich import box
-    from rich.console import Console
-    from rich.table import Table
-
     from fpsolve.results.compare.comparison import sections, verdict
 
-    console = Console(highlight=False, markup=False)
     a, b = comparison.names
-    console.print(f"A = {a}, B = {b}: {comparison.kind}")
+    print_lines(f"A = {a}, B = {b}: {comparison.kind}")
     if comparison.differing:
-        table = Table(box=box.SIMPLE_HEAD)
-        for name in ("variable", "|B − A|", "relative", "at", "in errors"):
-            table.add_column(name, justify="left", no_wrap=name != "at")
-        for one in comparison.differing[:_MOST_ROWS]:
-            table.add_row(*_row(one))
-        console.print(table)
-        console.print("relative: to the largest |A|; in errors: of A and B together")
+        print_table(
+            ("variable", "|B − A|", "relative", "at", "in errors"),
+            map(_row, comparison.differing[:_MOST_ROWS]),
+            style=lambda heading: {"justify": "left", "no_wrap": heading != "at"},
+        )
+        print_lines("relative: to the largest |A|; in errors: of A and B together")
     hidden = len(comparison.differing) - _MOST_ROWS
     if hidden > 0:
-        console.print(f"and {hidden} more variables")
-    console.print(verdict(comparison), soft_wrap=True)
+        print_lines(f"and {hidden} more variables")
+    print_lines(verdict(comparison), whole=True)
     for title, entries in sections(comparison).items():
         if entries:
-            console.print(f"{title}:")
-            for entry in entries:
-                console.print(f"  {entry}", soft_wrap=True)
+            print_lines(f"{title}:")
+            print_lines(*(f"  {entry}" for entry in entries), whole=True)
 
 
 def _row(one: Difference) -> tuple[str, ...]:
@@ -107,15 +102,3 @@ def _row(one: Difference) -> tuple[str, ...]:
     errors = "" if one.in_errors is None else f"{one.in_errors:.2g}{units}"
     place = place_text(one)
     return one.name, f"{one.largest:.3g}", f"{one.relative:.2g}", place, errors
-
-
-def _draw(comparison: Comparison, a: Path, b: Path, folder: Path) -> Path:
-    from fpsolve._support.files import atomic_path, made_folder
-    from fpsolve.plotting.differences import plot_comparison
-    from fpsolve.plotting.style import RESOLUTION, paper_style
-
-    made_folder(folder, "--out")
-    path = folder / f"{a.stem}-{b.stem}-difference.png"
-    with paper_style(), atomic_path(path) as draft:
-        plot_comparison(comparison).savefig(draft, dpi=RESOLUTION)
-    return path

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-__all__ = ["EXAMPLES", "KINDS", "PARTS", "proposing"]
+__all__ = ["CONFINING", "EXAMPLES", "PARTS", "proposing"]
 
 # Written out, because a shell waits for the answer: the modules that know these words
 # take half a second to import. tests/test_cli_completion.py holds them together.
 EXAMPLES = ("laydown", "spunbond")
-KINDS = ("quadratic", "linear", "power")
+CONFINING = ("quadratic", "linear", "power")
 PARTS = ("relaxation", "evolution", "branches", "gap", "variance")
 
 

@@ -8,17 +8,10 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from fpsolve.cli.command import command_line
-from fpsolve.cli.completion import KINDS, proposing
-from fpsolve.cli.errors import reported_errors
-from fpsolve.cli.potentials import (
-    Exponent,
-    Sigma1,
-    Sigma2,
-    Slope,
-    make_potential,
-    potential_options,
-)
-from fpsolve.cli.run import NoFigures, Out
+from fpsolve.cli.console import print_lines, print_table
+from fpsolve.cli.frame import command
+from fpsolve.cli.options import NoFigures, Out
+from fpsolve.cli.potentials import PARAMETERS, Kind, Noise, Parameters, with_parameters
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -27,16 +20,6 @@ if TYPE_CHECKING:
 
 __all__ = ["energy"]
 
-Kind = Annotated[
-    str,
-    typer.Option(
-        "--potential",
-        metavar="KIND",
-        help="quadratic, linear or power.",
-        autocompletion=proposing(*KINDS),
-    ),
-]
-Noise = Annotated[float, typer.Option(metavar="A", help="Noise amplitude.")]
 Energies = Annotated[
     int, typer.Option("--energies", min=1, help="Rows of the table, from 0 to g_max.")
 ]
@@ -59,16 +42,14 @@ _FIGURES = {
 }
 
 
+@with_parameters
 def energy(
     potential: Kind = "quadratic",
     noise: Noise = 1.0,
     energies: Energies = 10,
     count: Count = 4,
     passage: Passage = None,
-    sigma1: Sigma1 = 1.0,
-    sigma2: Sigma2 = None,
-    slope: Slope = 1.0,
-    exponent: Exponent = 4.0,
+    parameters: Parameters = PARAMETERS,
     out: Out = Path("results"),
     no_figures: NoFigures = False,
 ) -> None:
@@ -78,16 +59,13 @@ def energy(
     rates of (16), with errors, and writes them and figures. The energy is
     G = r exp(-B(r)) sin β, β the angle between fibre and radius.
     """
-    with reported_errors():
-        from fpsolve._support.files import check_folder
-
-        check_folder(out, "--out")
-        from fpsolve.cli.writing import check_outputs
+    figures = (f"energy-{name}.png" for name in _FIGURES)
+    with command(out, "energy.nc", *figures, figures=not no_figures) as frame:
+        from fpsolve.plotting import energy as plotting
         from fpsolve.reduced.energy.process import EnergyProcess
         from fpsolve.studies.energy_tables import tables_dataset
 
-        check_outputs(out, "energy.nc", *(f"energy-{name}.png" for name in _FIGURES))
-        chosen = make_potential(potential, sigma1, sigma2, slope, exponent)
+        chosen = parameters.make(potential)
         process = EnergyProcess(chosen, noise)
         walk = None if passage is None else _passage(process, *passage)
         tables = tables_dataset(process, energies, count)
@@ -95,10 +73,13 @@ def energy(
         if walk is not None:
             typer.echo(walk)
         used = command_line(
-            "energy", **potential_options(chosen), noise=noise, energies=energies,
+            "energy", potential=chosen, noise=noise, energies=energies,
             count=count,
         )  # fmt: skip
-        _write(process, tables.assign_attrs(used), out, not no_figures)
+        frame.finish(tables, "energy.nc", **used)
+        for name, drawn in _FIGURES.items():
+            draw = getattr(plotting, f"plot_{drawn}")
+            frame.figure(draw, process, name=f"energy-{name}.png")
 
 
 def _passage(process: EnergyProcess, start: float, target: float) -> str:
@@ -111,52 +92,20 @@ def _passage(process: EnergyProcess, start: float, target: float) -> str:
 
 
 def _print(process: EnergyProcess, tables: xr.Dataset) -> None:
-    from rich import box
-    from rich.console import Console
-    from rich.table import Table
-
     from fpsolve.pages.energy import COEFFICIENTS
 
-    console = Console(highlight=False, markup=False)
-    console.print(
+    print_lines(
         f"energy process, B = {process.potential.formula}, A = {process.noise:g}: "
         f"circle r = {process.radius:.6g}, g_max = {process.g_max:.6g}"
     )
-    table = Table(box=box.SIMPLE_HEAD)
-    for title in COEFFICIENTS.values():
-        table.add_column(title, justify="right")
-    for row in zip(*(tables[name].to_numpy() for name in COEFFICIENTS), strict=True):
-        table.add_row(*(f"{value:.5g}" for value in row))
-    console.print(table)
+    rows = zip(*(tables[name].to_numpy() for name in COEFFICIENTS), strict=True)
+    print_table(
+        COEFFICIENTS.values(), ((f"{value:.5g}" for value in row) for row in rows)
+    )
     for family, meaning in (("even", "|G|"), ("odd", "sign of G")):
         one = tables.sel(family=family)
-        console.print(f"decay rates, {family} family ({meaning}):")
+        print_lines(f"decay rates, {family} family ({meaning}):")
         pairs = zip(one["eigenvalue"].to_numpy(), one["eigenvalue_error"].to_numpy(),
                     strict=True)  # fmt: skip
         for value, error in pairs:
-            console.print(f"  {value:.10g} ± {error:.0e}" if error else "  0 exactly")
-
-
-def _write(
-    process: EnergyProcess, tables: xr.Dataset, out: Path, figures: bool
-) -> None:
-    from fpsolve._support.files import made_folder
-    from fpsolve._support.netcdf import write_dataset
-
-    made_folder(out, "--out")
-    typer.echo(write_dataset(tables, out / "energy.nc"))
-    if figures:
-        _draw(process, out)
-
-
-def _draw(process: EnergyProcess, out: Path) -> None:
-    from fpsolve._support.files import atomic_path
-    from fpsolve.plotting import energy as plotting
-    from fpsolve.plotting.style import RESOLUTION, paper_style
-
-    for name in _FIGURES:
-        plot = getattr(plotting, f"plot_{_FIGURES[name]}")
-        path = out / f"energy-{name}.png"
-        with paper_style(), atomic_path(path) as draft:
-            plot(process).savefig(draft, dpi=RESOLUTION)
-        typer.echo(path)
+            print_lines(f"  {value:.10g} ± {error:.0e}" if error else "  0 exactly")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from fpsolve.cli.console import print_lines, print_pairs, print_table
 from fpsolve.cli.plan import units_text, with_options
 
 if TYPE_CHECKING:
@@ -18,19 +19,12 @@ def print_paths_plan(
     config: PathsConfig, problem: PathsProblem, out: Path, seed_from: str
 ) -> None:
     """Print equation, units, start, steps, method, and where the seed comes from."""
-    from rich.console import Console
-    from rich.table import Table
-
-    table = Table.grid(padding=(0, 2))
-    for name, text in _plan(config, problem, out, seed_from):
-        table.add_row(name, text)
-    Console(highlight=False, markup=False).print(table)
+    print_pairs(_plan(config, problem, out, seed_from))
 
 
 def _plan(
     config: PathsConfig, problem: PathsProblem, out: Path, seed_from: str
 ) -> list[tuple[str, str]]:
-
     arguments = problem.arguments
     lines = [("equation", problem.model.process_equation)]
     if config.process is not None:
@@ -63,21 +57,12 @@ def _cells(grid: Any) -> str:
 
 def print_moments(paths: Paths) -> None:
     """Print means and variances with their standard errors at some arclengths."""
-    from rich import box
-    from rich.console import Console
-    from rich.table import Table
-
     from fpsolve.pages.paths import MOMENTS, moment_rows
 
-    console = Console(highlight=False, markup=False)
-    table = Table(box=box.SIMPLE_HEAD)
-    for name in ("s", *MOMENTS):
-        table.add_column(name, justify="right")
-    for row in moment_rows(paths):
-        table.add_row(*row)
-    console.print(table)
-    console.print("in parentheses: one standard error, in units of the last digit")
-    console.print(_speed(paths))
+    print_table(("s", *MOMENTS), moment_rows(paths))
+    print_lines(
+        "in parentheses: one standard error, in units of the last digit", _speed(paths)
+    )
 
 
 def _speed(paths: Paths) -> str:

@@ -6,24 +6,22 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from fpsolve.cli.errors import reported_errors
+from fpsolve.cli.console import print_lines
+from fpsolve.cli.frame import command
 
 __all__ = ["info"]
 
 
 def info() -> None:
     """Print versions, threads and compile cache."""
-    with reported_errors():
-        from rich.console import Console
-
+    with command():
         from fpsolve._support.provenance import versions
 
         rows = {**versions(), "threads": _threads(), "compile cache": _cache()}
         width = max(map(len, rows))
-        console = Console(highlight=False, markup=False, soft_wrap=True)
-        for name, text in rows.items():
-            # No table: paths are for copying, so they are neither wrapped nor cut.
-            console.print(f"{name:{width}}  {text}")
+        # No table: paths are for copying, so they are neither wrapped nor cut.
+        lines = (f"{name:{width}}  {text}" for name, text in rows.items())
+        print_lines(*lines, whole=True)
 
 
 def _threads() -> str:

@@ -2,25 +2,17 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from fpsolve.cli.cases import computing_cases, report_failures
 from fpsolve.cli.command import command_line
-from fpsolve.cli.completion import KINDS, proposing
-from fpsolve.cli.errors import FAILED, INTERRUPTED, fail, reported_errors, say
-from fpsolve.cli.potentials import (
-    Exponent,
-    Sigma1,
-    Sigma2,
-    Slope,
-    make_potential,
-    potential_options,
-)
-from fpsolve.cli.rate import Scheduler, Workers, case_bar, save_figure
-from fpsolve.cli.run import NoFigures, Out
+from fpsolve.cli.console import print_lines, print_table
+from fpsolve.cli.frame import Frame, command
+from fpsolve.cli.options import NoFigures, Out, Scheduler, Workers
+from fpsolve.cli.potentials import PARAMETERS, Kind, Parameters, with_parameters
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -32,20 +24,15 @@ __all__ = ["limits"]
 LARGE, SMALL, BOTH = "large-noise", "small-noise", "both"
 NOISES = {LARGE: (1.4, 2.0, 2.8, 4.0), SMALL: (0.4, 0.2, 0.1)}
 QUICK_NOISES = {LARGE: (1.4, 2.0, 2.8), SMALL: (0.4, 0.2)}
+# Columns of the table, where nobody sees it wrap.
 _WIDTH = 110
-_ENDINGS = ("nc", "png")
+_NOTES = {
+    LARGE: "orders in ε = 1/A²; *: below three times its numerical error",
+    SMALL: "orders in A²; paths: distance by paths and by chance alone",
+}
 
 Which = Annotated[
     str, typer.Argument(metavar="[WHICH]", help=f"{LARGE}, {SMALL} or {BOTH}.")
-]
-Kind = Annotated[
-    str,
-    typer.Option(
-        "--potential",
-        metavar="KIND",
-        help="quadratic, linear or power.",
-        autocompletion=proposing(*KINDS),
-    ),
 ]
 Noises = Annotated[
     list[float] | None,
@@ -59,16 +46,14 @@ Noises = Annotated[
 Quick = Annotated[bool, typer.Option("--quick", help="Coarser, for a look.")]
 
 
+@with_parameters
 def limits(
     which: Which = BOTH,
     potential: Kind = "quadratic",
     noise: Noises = None,
     out: Out = Path("results"),
     quick: Quick = False,
-    sigma1: Sigma1 = 1.0,
-    sigma2: Sigma2 = None,
-    slope: Slope = 1.0,
-    exponent: Exponent = 4.0,
+    parameters: Parameters = PARAMETERS,
     scheduler: Scheduler = None,
     workers: Workers = None,
     no_figures: NoFigures = False,
@@ -81,20 +66,14 @@ def limits(
     finished case is kept in OUT/limit-cases, so that the same command goes on where it
     was stopped.
     """
-    with reported_errors():
-        from fpsolve._support.files import check_folder
-        from fpsolve.cli.writing import check_outputs
-
-        check_folder(out, "--out")
+    with command(out, figures=not no_figures) as frame:
         chosen = _chosen(which, noise)
-        one = make_potential(potential, sigma1, sigma2, slope, exponent)
+        one = parameters.make(potential)
         for name in chosen:
-            check_outputs(out, *(f"{name}-{one.kind}.{ending}" for ending in _ENDINGS))
+            frame.claim(f"{name}-{one.kind}.nc", f"{name}-{one.kind}.png")
         options = {"quick": quick, "client": scheduler, "workers": workers}
-        studies = [
-            _study(name, one, noise, out, options, not no_figures) for name in chosen
-        ]
-        _report_failures(studies)
+        studies = [_study(frame, name, one, noise, options) for name in chosen]
+        report_failures(studies, _words)
 
 
 def _chosen(which: str, noise: list[float] | None) -> list[str]:
@@ -109,101 +88,63 @@ def _chosen(which: str, noise: list[float] | None) -> list[str]:
 
 
 def _study(
+    frame: Frame,
     name: str,
     potential: Potential,
     noise: list[float] | None,
-    out: Path,
     options: dict[str, Any],
-    figures: bool,
 ) -> xr.Dataset:
     """Compute, print, write and draw one limit."""
-    from fpsolve.errors import RunInterrupted
-
     noises = noise or (QUICK_NOISES if options["quick"] else NOISES)[name]
-    compute = _studies()[name]
-    try:
-        with case_bar(name) as report:
-            found: xr.Dataset = compute(
-                potential, noises, directory=out / "limit-cases", progress=report,
-                **options,
-            )  # fmt: skip
-    except RunInterrupted as interrupt:
-        _write(interrupt.solution, name, out, "-interrupted")
-        fail("interrupted; what was finished is kept", INTERRUPTED)
+    compute, draw = _of(name)
+    file_name = f"{name}-{potential.kind}"
+    with computing_cases(frame, file_name, name) as report:
+        found: xr.Dataset = compute(
+            potential, noises, directory=frame.out / "limit-cases", progress=report,
+            **options,
+        )  # fmt: skip
     used = command_line(
-        "limits", name, **potential_options(potential), noise=noises,
+        "limits", name, potential=potential, noise=noises,
         quick=options["quick"],
     )  # fmt: skip
-    found = found.assign_attrs(used)
     _print(found, name)
-    typer.echo(_write(found, name, out))
-    if figures:
-        _draw(found, name, out)
+    frame.finish(found, f"{file_name}.nc", **used)
+    if bool(found["distance"].notnull().any()):
+        frame.figure(draw, found, name=f"{file_name}.png")
     return found
 
 
-def _studies() -> dict[str, Any]:
-    from fpsolve.studies.limits.large_noise import large_noise_limit
+def _of(name: str) -> tuple[Any, Any]:
+    """What computes a limit, and what draws it."""
+    if name == LARGE:
+        from fpsolve.plotting.limits import plot_large_noise
+        from fpsolve.studies.limits.large_noise import large_noise_limit
+
+        return large_noise_limit, plot_large_noise
+    from fpsolve.plotting.small_noise import plot_small_noise
     from fpsolve.studies.limits.small_noise import small_noise_limit
 
-    return {LARGE: large_noise_limit, SMALL: small_noise_limit}
+    return small_noise_limit, plot_small_noise
 
 
 def _print(dataset: xr.Dataset, name: str) -> None:
     """Print one row for every quantity, or for every belt and noise."""
-    from rich import box
-    from rich.console import Console
-    from rich.table import Table
-
     from fpsolve.pages.limits import large_rows, small_rows
 
-    table = Table(box=box.SIMPLE_HEAD, title=f"{name}, B = {dataset.attrs['formula']}")
     rows = large_rows(dataset) if name == LARGE else small_rows(dataset)
-    for heading in rows[0]:
-        table.add_column(heading, justify="left" if heading == "quantity" else "right",
-                         vertical="bottom", no_wrap=True)  # fmt: skip
-    for row in rows:
-        table.add_row(*row.values())
-    # Where nobody sees it wrap, the table may be as wide as it is.
-    width = None if Console().is_terminal else _WIDTH
-    console = Console(highlight=False, markup=False, width=width)
-    console.print(table)
-    if name == LARGE:
-        console.print("orders in ε = 1/A²; *: below three times its numerical error")
-    else:
-        console.print("orders in A²; paths: distance by paths and by chance alone")
+    print_table(
+        rows[0],
+        (row.values() for row in rows),
+        title=f"{name}, B = {dataset.attrs['formula']}",
+        width=_WIDTH,
+        style=lambda heading: {
+            "justify": "left" if heading == "quantity" else "right",
+            "vertical": "bottom",
+            "no_wrap": True,
+        },
+    )
+    print_lines(_NOTES[name])
 
 
-def _write(dataset: xr.Dataset, name: str, out: Path, suffix: str = "") -> Path:
-    from fpsolve._support.files import made_folder
-    from fpsolve._support.netcdf import write_dataset
-
-    made_folder(out, "--out")
-    kind = json.loads(dataset.attrs["potential"])["kind"]
-    return write_dataset(dataset, out / f"{name}-{kind}{suffix}.nc")
-
-
-def _draw(dataset: xr.Dataset, name: str, out: Path) -> None:
-    from fpsolve.plotting.limits import plot_large_noise
-    from fpsolve.plotting.small_noise import plot_small_noise
-
-    kind = json.loads(dataset.attrs["potential"])["kind"]
-    draw = {LARGE: plot_large_noise, SMALL: plot_small_noise}[name]
-    if bool(dataset["distance"].notnull().any()):
-        save_figure(draw(dataset), out / f"{name}-{kind}.png")
-
-
-def _report_failures(studies: list[xr.Dataset]) -> None:
-    """Say which cases failed; the exit code is 1 if none was finished."""
-    finished = 0
-    for study in studies:
-        for place in zip(
-            *(study["status"] == "failed").to_numpy().nonzero(), strict=True
-        ):
-            at = dict(zip(study["status"].dims, place, strict=True))
-            message = str(study["message"].isel(at).item())
-            where = ", ".join(f"{key} {study[key][n].item()}" for key, n in at.items())
-            say(f"warning: {where} failed: {message}")
-        finished += int((study["status"] == "finished").sum())
-    if not finished:
-        raise typer.Exit(FAILED)
+def _words(case: dict[str, Any]) -> str:
+    return ", ".join(f"{key} {value}" for key, value in case.items())

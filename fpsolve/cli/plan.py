@@ -5,6 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from fpsolve.cli.console import print_pairs
+
 if TYPE_CHECKING:
     from fpsolve.cli.config.run import Problem, RunConfig
 
@@ -13,13 +15,7 @@ __all__ = ["print_plan", "suggestions", "units_text", "with_options"]
 
 def print_plan(config: RunConfig, problem: Problem, out: Path) -> None:
     """Print equation, units, grid, start, scheme, steps, and where they come from."""
-    from rich.console import Console
-    from rich.table import Table
-
-    table = Table.grid(padding=(0, 2))
-    for name, text in _lines(config, problem, out):
-        table.add_row(name, text)
-    Console(highlight=False, markup=False).print(table)
+    print_pairs(_lines(config, problem, out))
 
 
 def _lines(config: RunConfig, problem: Problem, out: Path) -> list[tuple[str, str]]:

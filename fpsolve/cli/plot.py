@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from fpsolve.cli.errors import reported_errors
+from fpsolve.cli.frame import command
 
 __all__ = ["plot"]
 
@@ -40,16 +40,13 @@ def plot(
     file: File, out: Out = None, movie: Movie = False, fps: FramesPerSecond = 8.0
 ) -> None:
     """Draw the figures of a result, or a movie."""
-    with reported_errors():
+    with command(out):
         from fpsolve import plotting
-        from fpsolve._support.files import check_folder
         from fpsolve.density.solution import Solution
         from fpsolve.plotting.movie import check_movie
         from fpsolve.results import load
         from fpsolve.results.kinds import kind_of
 
-        if out is not None:
-            check_folder(out, "--out")
         result = load(file)
         if movie and not isinstance(result, Solution):
             raise ValueError(

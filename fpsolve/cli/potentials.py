@@ -1,64 +1,95 @@
-"""Potentials from options of the command line."""
+"""Potentials from options of the command line, declared once for every command."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated
+import inspect
+from collections.abc import Callable
+from dataclasses import asdict, dataclass
+from functools import wraps
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+
+from fpsolve.cli.completion import CONFINING, proposing
 
 if TYPE_CHECKING:
     from fpsolve.model.potentials.potential import Potential
 
 __all__ = [
-    "Exponent",
-    "Sigma1",
-    "Sigma2",
-    "Slope",
-    "make_potential",
-    "potential_options",
+    "PARAMETERS",
+    "Kind",
+    "Kinds",
+    "Noise",
+    "Parameters",
+    "with_parameters",
 ]
 
-Sigma1 = Annotated[
-    float, typer.Option("--sigma1", help="Throwing range σ1 of a quadratic potential.")
+
+def _kind(end: str = ".", **options: Any) -> Any:
+    words = f"{', '.join(CONFINING[:-1])} or {CONFINING[-1]}{end}"
+    options |= {"metavar": "KIND", "autocompletion": proposing(*CONFINING)}
+    return typer.Option("--potential", help=words, **options)
+
+
+Kind = Annotated[str, _kind()]
+Kinds = Annotated[
+    list[str] | None,
+    _kind("; may be given several times.", show_default="quadratic and linear"),
 ]
-Sigma2 = Annotated[
-    float | None,
-    typer.Option(
-        "--sigma2", help="Throwing range σ2 across the belt.", show_default="σ1"
-    ),
-]
-Slope = Annotated[
-    float, typer.Option("--slope", help="Slope K of a linear potential K|ξ|.")
-]
-Exponent = Annotated[
-    float, typer.Option("--exponent", help="Exponent n of a power potential |ξ|ⁿ/n.")
-]
-KINDS = ("quadratic", "linear", "power", "free")
+Noise = Annotated[float, typer.Option(metavar="A", help="Noise amplitude.")]
 
 
-def make_potential(
-    kind: str, sigma1: float, sigma2: float | None, slope: float, exponent: float
-) -> Potential:
-    """Return the potential of a kind with the parameters that belong to it."""
-    from fpsolve.model.potentials.free import FreePotential
-    from fpsolve.model.potentials.linear import LinearPotential
-    from fpsolve.model.potentials.power import PowerPotential
-    from fpsolve.model.potentials.quadratic import QuadraticPotential
+@dataclass(frozen=True)
+class Parameters:
+    """Parameters of potentials, under their names; each kind has its own."""
 
-    if kind == "quadratic":
-        return QuadraticPotential(sigma1, sigma1 if sigma2 is None else sigma2)
-    if kind == "linear":
-        return LinearPotential(slope)
-    if kind == "power":
-        return PowerPotential(exponent)
-    if kind == "free":
-        return FreePotential()
-    raise ValueError(f"`--potential` must be one of {', '.join(KINDS)}, got {kind!r}.")
+    sigma1: Annotated[
+        float, typer.Option(help="Throwing range σ1 of a quadratic potential.")
+    ] = 1.0
+    sigma2: Annotated[
+        float | None,
+        typer.Option(help="Throwing range σ2 across the belt.", show_default="σ1"),
+    ] = None
+    slope: Annotated[
+        float, typer.Option(help="Slope K of a linear potential K|ξ|.")
+    ] = 1.0
+    exponent: Annotated[
+        float, typer.Option(help="Exponent n of a power potential |ξ|ⁿ/n.")
+    ] = 4.0
+
+    def make(self, kind: str) -> Potential:
+        """Return the potential of a kind, with the parameters that belong to it."""
+        from fpsolve.model.potentials.dictionaries import KINDS
+
+        if kind not in KINDS:
+            known = ", ".join(KINDS)
+            raise ValueError(f"`--potential` must be one of {known}, got {kind!r}.")
+        given = asdict(self)
+        if self.sigma2 is None:
+            given["sigma2"] = self.sigma1
+        own = inspect.signature(KINDS[kind]).parameters.keys() & given.keys()
+        return KINDS[kind](**{name: given[name] for name in own})
 
 
-def potential_options(potential: Potential) -> dict[str, str | float]:
-    """Return the options with which `make_potential` makes this one."""
-    parameters = potential.to_dict()
-    names = {"sigma1", "sigma2", "slope", "exponent"}
-    own = {name: float(parameters[name]) for name in names & parameters.keys()}
-    return {"potential": potential.kind, **dict(sorted(own.items()))}
+PARAMETERS = Parameters()
+
+
+def with_parameters(command: Callable[..., None]) -> Callable[..., None]:
+    """Give a command the parameters of potentials as options.
+
+    They stand in the place of its argument `parameters`, which it is called with.
+    """
+    own = inspect.signature(Parameters, eval_str=True).parameters
+    shown: list[inspect.Parameter] = []
+    for one in inspect.signature(command, eval_str=True).parameters.values():
+        shown += own.values() if one.name == "parameters" else [one]
+
+    @wraps(command)
+    def called(**given: Any) -> None:
+        parameters = Parameters(**{name: given.pop(name) for name in own})
+        command(**given, parameters=parameters)
+
+    # What typer reads.
+    called.__signature__ = inspect.Signature(shown)  # type: ignore[attr-defined]
+    called.__annotations__ = {one.name: one.annotation for one in shown}
+    return called

@@ -2,43 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from fpsolve.cli.cases import computing_cases, report_failures
 from fpsolve.cli.command import command_line
-from fpsolve.cli.completion import KINDS, PARTS, proposing
-from fpsolve.cli.errors import FAILED, INTERRUPTED, fail, reported_errors
-from fpsolve.cli.potentials import (
-    Exponent,
-    Sigma1,
-    Sigma2,
-    Slope,
-    make_potential,
-    potential_options,
-)
-from fpsolve.cli.run import NoFigures, Out
+from fpsolve.cli.completion import PARTS, proposing
+from fpsolve.cli.console import print_lines, print_table
+from fpsolve.cli.frame import Frame, command
+from fpsolve.cli.options import NoFigures, Out, Scheduler, Workers
+from fpsolve.cli.potentials import PARAMETERS, Kinds, Parameters, with_parameters
 
 if TYPE_CHECKING:
     import xarray as xr
 
     from fpsolve.model.potentials.potential import Potential
 
-__all__ = ["case_bar", "rate", "save_figure"]
+__all__ = ["rate"]
 
-Potentials = Annotated[
-    list[str] | None,
-    typer.Option(
-        "--potential",
-        metavar="KIND",
-        help="quadratic, linear or power; may be given several times.",
-        autocompletion=proposing(*KINDS),
-        show_default="quadratic and linear",
-    ),
-]
 Noises = Annotated[
     list[float] | None,
     typer.Option(
@@ -60,18 +43,6 @@ Parts = Annotated[
         show_default="all",
     ),
 ]
-Scheduler = Annotated[
-    str | None,
-    typer.Option(
-        metavar="ADDRESS",
-        help="Run on the dask scheduler at this address.",
-        show_default=False,
-    ),
-]
-Workers = Annotated[
-    int | None,
-    typer.Option(min=0, help="Processes; 0 runs in this one.", show_default="CPUs"),
-]
 Tolerance = Annotated[
     float | None,
     typer.Option(
@@ -82,17 +53,15 @@ Tolerance = Annotated[
 _ENDINGS = (".nc", ".png", "-variance.png")
 
 
+@with_parameters
 def rate(
-    potential: Potentials = None,
+    potential: Kinds = None,
     noise: Noises = None,
     out: Out = Path("results"),
     quick: Quick = False,
     part: Parts = None,
     tolerance: Tolerance = None,
-    sigma1: Sigma1 = 1.0,
-    sigma2: Sigma2 = None,
-    slope: Slope = 1.0,
-    exponent: Exponent = 4.0,
+    parameters: Parameters = PARAMETERS,
     scheduler: Scheduler = None,
     workers: Workers = None,
     no_figures: NoFigures = False,
@@ -104,62 +73,21 @@ def rate(
     of averages, proven bounds and asymptotes. Every finished case is kept in
     OUT/rate-cases, so that the same command goes on where it was stopped.
     """
-    with reported_errors():
-        from fpsolve._support.files import check_folder
-
-        check_folder(out, "--out")
-        from fpsolve.cli.writing import check_outputs
-        from fpsolve.errors import RunInterrupted
-
+    with command(out, figures=not no_figures) as frame:
         amplitudes = noise if noise else _default_noises(quick)
         chosen = [
-            make_potential(kind, sigma1, sigma2, slope, exponent)
-            for kind in potential or ("quadratic", "linear")
+            parameters.make(kind) for kind in potential or ("quadratic", "linear")
         ]
         for one in chosen:
-            names = (f"rate-{one.kind}{ending}" for ending in _ENDINGS)
-            check_outputs(out, *names, "rate-integral.png")
+            frame.claim(*(f"rate-{one.kind}{ending}" for ending in _ENDINGS))
+        frame.claim("rate-integral.png")
         options = {
             "quick": quick, "tolerance": tolerance, "client": scheduler,
             "workers": workers,
         }  # fmt: skip
-        studies = []
-        for one in chosen:
-            parts = _parts_for(one, part)
-            try:
-                studies.append(_study(one, amplitudes, parts, out, options))
-                used = command_line(
-                    "rate", **potential_options(one), noise=amplitudes, part=parts,
-                    quick=quick, tolerance=tolerance,
-                )  # fmt: skip
-                studies[-1] = studies[-1].assign_attrs(used)
-            except RunInterrupted as interrupt:
-                _write(interrupt.solution, out, "-interrupted")
-                fail("interrupted; what was finished is kept", INTERRUPTED)
-            print_rates(studies[-1])
-            typer.echo(_write(studies[-1], out))
-        if not no_figures:
-            _draw(studies, out)
-        _report_failures(studies)
-
-
-def print_rates(dataset: xr.Dataset) -> None:
-    """Print one row for every noise: integral, rates, gap, bound."""
-    from rich import box
-    from rich.console import Console
-    from rich.table import Table
-
-    from fpsolve.pages.rates import rate_columns
-
-    console = Console(highlight=False, markup=False)
-    table = Table(box=box.SIMPLE_HEAD, title=f"B = {dataset.attrs['formula']}")
-    columns = rate_columns(dataset)
-    for name in columns:
-        table.add_column(name, justify="right")
-    for row in zip(*columns.values(), strict=True):
-        table.add_row(*row)
-    console.print(table)
-    console.print("in parentheses: the error in units of the last digit")
+        studies = [_study(frame, one, amplitudes, part, options) for one in chosen]
+        _draw(frame, [one.kind for one in chosen], studies)
+        report_failures(studies, "{part} at A = {noise:g}".format_map)
 
 
 def _default_noises(quick: bool) -> list[float]:
@@ -178,97 +106,44 @@ def _parts_for(potential: Potential, wanted: list[str] | None) -> list[str] | No
 
 
 def _study(
+    frame: Frame,
     potential: Potential,
     noises: list[float],
-    parts: list[str] | None,
-    out: Path,
+    wanted: list[str] | None,
     options: dict[str, Any],
 ) -> xr.Dataset:
+    """Compute, print and write the study of one potential."""
+    from fpsolve.pages.rates import rate_columns
     from fpsolve.studies.rates.rate_versus_noise import rate_versus_noise
 
-    store = None if potential.kind in ("callable", "custom") else out / "rate-cases"
-    with case_bar(f"B = {potential.formula}") as report:
-        return rate_versus_noise(
-            potential, noises, parts=parts, directory=store, progress=report, **options
-        )
-
-
-@contextmanager
-def case_bar(title: str) -> Iterator[Callable[[int, int, Any], None]]:
-    """Show a bar that counts cases; silent outside of a terminal."""
-    from rich.console import Console
-    from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
-
-    console = Console(stderr=True)
-    columns = (
-        TextColumn(title), BarColumn(),
-        TextColumn("{task.completed:.0f}/{task.total:.0f} cases"),
-        TimeRemainingColumn(),
+    name, parts = f"rate-{potential.kind}", _parts_for(potential, wanted)
+    with computing_cases(frame, name, f"B = {potential.formula}") as report:
+        found = rate_versus_noise(
+            potential, noises, parts=parts, directory=frame.out / "rate-cases",
+            progress=report, **options,
+        )  # fmt: skip
+    columns = rate_columns(found)
+    rows = zip(*columns.values(), strict=True)
+    print_table(columns, rows, title=f"B = {potential.formula}")
+    print_lines("in parentheses: the error in units of the last digit")
+    used = command_line(
+        "rate", potential=potential, noise=noises, part=parts,
+        quick=options["quick"], tolerance=options["tolerance"],
     )  # fmt: skip
-    with Progress(
-        *columns, console=console, transient=True, disable=not console.is_terminal
-    ) as bar:
-        task = bar.add_task("rate", total=1)
-
-        def report(n_done: int, n_total: int, _: Any) -> None:
-            bar.update(task, completed=n_done, total=n_total)
-
-        yield report
+    frame.finish(found, f"{name}.nc", **used)
+    return found
 
 
-def _write(dataset: xr.Dataset, out: Path, suffix: str = "") -> Path:
-    import json
-
-    from fpsolve._support.files import made_folder
-    from fpsolve._support.netcdf import write_dataset
-
-    made_folder(out, "--out")
-    kind = json.loads(dataset.attrs["potential"])["kind"]
-    return write_dataset(dataset, out / f"rate-{kind}{suffix}.nc")
-
-
-def _draw(studies: list[xr.Dataset], out: Path) -> None:
-    import json
-
-    from fpsolve.plotting.rates import (
-        plot_asymptotic_variance,
-        plot_inverse_decay_rate,
-        plot_rates,
-    )
+def _draw(frame: Frame, kinds: list[str], studies: list[xr.Dataset]) -> None:
+    """Draw what was computed, for all potentials and for each."""
+    from fpsolve.plotting import rates
 
     if all("inverse_decay_rate" in one for one in studies):
-        save_figure(plot_inverse_decay_rate(studies), out / "rate-integral.png")
-    for one in studies:
-        kind = json.loads(one.attrs["potential"])["kind"]
+        frame.figure(rates.plot_inverse_decay_rate, studies, name="rate-integral.png")
+    for kind, one in zip(kinds, studies, strict=True):
+        name = f"rate-{kind}"
         if "gap" in one or "branch_rate" in one:
-            save_figure(plot_rates(one), out / f"rate-{kind}.png")
+            frame.figure(rates.plot_rates, one, name=f"{name}.png")
         if "asymptotic_variance" in one:
-            path = out / f"rate-{kind}-variance.png"
-            save_figure(plot_asymptotic_variance(one), path)
-
-
-def save_figure(figure: Any, path: Path) -> None:
-    """Write a figure as PNG, whole or not at all, and print where it is."""
-    from fpsolve._support.files import atomic_path
-    from fpsolve.plotting.style import RESOLUTION, paper_style
-
-    with paper_style(), atomic_path(path) as draft:
-        figure.savefig(draft, dpi=RESOLUTION)
-    typer.echo(path)
-
-
-def _report_failures(studies: list[xr.Dataset]) -> None:
-    """Say which cases failed; the exit code is 1 if none was finished."""
-    from fpsolve.cli.errors import say
-
-    finished = 0
-    for study in studies:
-        for noise in study["noise"].to_numpy():
-            for part in study["part"].to_numpy():
-                one = study.sel(noise=noise, part=part)
-                status, message = str(one["status"].item()), str(one["message"].item())
-                finished += status == "finished"
-                if status == "failed":
-                    say(f"warning: {part} at A = {noise:g} failed: {message}")
-    if not finished:
-        raise typer.Exit(FAILED)
+            draw = rates.plot_asymptotic_variance
+            frame.figure(draw, one, name=f"{name}-variance.png")

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from fpsolve.cli.errors import reported_errors
+from fpsolve.cli.frame import command
 
 __all__ = ["report"]
 
@@ -41,7 +41,7 @@ def report(files: Files, out: Out = None, title: Title = None) -> None:
     file, on a page that needs neither network nor scripts and can be printed. Nothing
     is written unless every file can be read.
     """
-    with reported_errors():
+    with command():
         from fpsolve.pages.page import report as write_report
         from fpsolve.pages.page import report_text
 

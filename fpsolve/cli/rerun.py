@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from fpsolve.cli.errors import FAILED, INTERRUPTED, fail, reported_errors
-from fpsolve.cli.run import Threads
+from fpsolve.cli.errors import FAILED
+from fpsolve.cli.frame import Frame, command
+from fpsolve.cli.options import Threads, set_threads
+from fpsolve.cli.progress import case_bar
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -32,6 +33,8 @@ Workers = Annotated[
 ]
 # Studies of many cases, which take `workers`.
 _SWEEPS = ("rate", "large-noise", "small-noise")
+# What is repeated without a bar.
+_SILENT = ("spectrum", "energy-tables", "small-noise-spectrum")
 # What a part of the paths has in common with all of them.
 _OF_EVERY_PATH = ("xi", "tau", "turns", "alpha", "start_xi", "start_tau", "start_turns")
 
@@ -49,24 +52,19 @@ def rerun(
     the largest value of each variable), as they may after a change of machine or of
     versions; then those are named. Otherwise it is 1.
     """
-    with reported_errors():
-        from fpsolve._support.files import check_folder
-        from fpsolve.cli.run import set_threads
-        from fpsolve.cli.writing import check_outputs
+    with command(out) as frame:
         from fpsolve.results.compare.reading import dataset_of, kind_of_dataset
 
-        check_folder(out, "--out")
         old = dataset_of(file, "FILE")
         kind = kind_of_dataset(old, "FILE")
         status = str(old.attrs.get("status", "finished"))
         target = _target(file, out, status)
-        check_outputs(target.parent, target.name)
+        frame.claim(target.name)
         set_threads(threads)
         _announce(old, kind, status)
         given = workers is not None and kind in _SWEEPS
         options = {"workers": workers} if given else {}
-        _write(_repeat(file, kind, options), target)
-        typer.echo(target)
+        frame.finish(_repeat(frame, file, kind, options), target.name)
         _judge(_compared(file, target), status)
 
 
@@ -92,45 +90,15 @@ def _announce(old: xr.Dataset, kind: str, status: str) -> None:
         typer.echo(f"the file holds {article} {status} run; the whole is repeated")
 
 
-def _repeat(file: Path, kind: str, options: dict[str, Any]) -> Any:
-    from fpsolve.errors import RunInterrupted
+def _repeat(frame: Frame, file: Path, kind: str, options: dict[str, Any]) -> Any:
     from fpsolve.results.rerun.repeating import rerun as repeat
 
-    try:
-        with _bar(kind) as progress:
-            return repeat(file, **progress, **options)
-    except RunInterrupted:
-        fail("interrupted; nothing was written", INTERRUPTED)
-
-
-@contextmanager
-def _bar(kind: str) -> Iterator[dict[str, Any]]:
-    """The bar that suits what is repeated; spectra and tables have none."""
-    # Not `from fpsolve.cli.progress import`: a test replaces the bar in its module.
-    from fpsolve.cli import progress
-    from fpsolve.cli.rate import case_bar
-
-    if kind in _SWEEPS:
-        with case_bar(kind) as report:
-            yield {"progress": report}
-    elif kind in ("spectrum", "energy-tables", "small-noise-spectrum"):
-        yield {}
-    else:
-        with progress.progress_bar() as report:
-            yield {"progress": report}
-
-
-def _write(result: Any, target: Path) -> None:
-    import xarray as xr
-
-    from fpsolve._support.files import made_folder
-    from fpsolve._support.netcdf import write_dataset
-
-    made_folder(target.parent, "--out")
-    if isinstance(result, xr.Dataset):
-        write_dataset(result, target)
-    else:
-        result.save(target)
+    bar: AbstractContextManager[Any] | None = None
+    if kind in (*_SWEEPS, *_SILENT):
+        bar = case_bar(kind) if kind in _SWEEPS else nullcontext()
+    with frame.computing(bar=bar, kept="nothing was written") as report:
+        progress = {} if kind in _SILENT else {"progress": report}
+        return repeat(file, **progress, **options)
 
 
 def _compared(file: Path, target: Path) -> Comparison:

@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from fpsolve.cli.errors import reported_errors
-from fpsolve.cli.run import KeepCheckpoint, NoFigures, Threads, set_threads
-from fpsolve.cli.solving import keeping_partial_results, say_where, solve_and_write
+from fpsolve.cli.frame import Frame, command
+from fpsolve.cli.options import KeepCheckpoint, NoFigures, Threads, set_threads
+from fpsolve.cli.solving import (
+    RECORDED,
+    print_solution,
+    say_where,
+    solve_and_write,
+)
+from fpsolve.cli.writing import claim_result, write_result
 
 if TYPE_CHECKING:
     from fpsolve.density.checkpoints.manifest import Manifest
-    from fpsolve.density.solution import Solution
 
 __all__ = ["resume"]
 
@@ -41,23 +47,22 @@ def resume(
     The result is bitwise that of a run that was never stopped, and it is written,
     drawn and shown in the same way.
     """
-    with reported_errors():
-        from fpsolve._support.files import check_folder
+    with command(figures=not no_figures) as frame:
         from fpsolve.density.checkpoints.manifest import read_manifest
 
         manifest = read_manifest(directory)
         set_threads(threads)
         # "." has no name, nor has a path that ends in "..".
         home = directory if directory.name else directory.resolve()
-        out = check_folder(home.parent if out is None else out, "--out")
+        frame.use(home.parent if out is None else out)
         if "configuration" in manifest.notes:
-            _resume_configured(directory, manifest, out, no_figures, keep_checkpoint)
+            _resume_configured(frame, directory, manifest, keep_checkpoint)
         else:
-            _resume_other(directory, out, not no_figures)
+            _resume_other(frame, directory)
 
 
 def _resume_configured(
-    directory: Path, manifest: Manifest, out: Path, no_figures: bool, keep: bool
+    frame: Frame, directory: Path, manifest: Manifest, keep: bool
 ) -> None:
     """Go on with what `fpsolve run` began."""
     from fpsolve.cli.config.reading import read_config
@@ -66,38 +71,22 @@ def _resume_configured(
 
     text = manifest.notes["configuration"]
     config = read_config(text, f"the configuration in `{directory}`")
-    if no_figures:
+    if not frame.figures:
         config = config.without_figures()
     p0, _ = read_start(directory, manifest.run)
     problem = config.build(saved_in_memory=False)._replace(p0=p0)
     checkpoint = Checkpoint(directory, manifest.every, manifest.notes)
-    solve_and_write(problem, config, out, checkpoint, keep)
+    solve_and_write(frame, problem, config, checkpoint, keep)
 
 
-def _resume_other(directory: Path, out: Path, figures: bool) -> None:
+def _resume_other(frame: Frame, directory: Path) -> None:
     """Go on with what Python began; the folder stays, for Python may still use it."""
-    from fpsolve.cli import progress
     from fpsolve.density.resume import resume as completed
 
-    def write(solution: Solution, figures: bool) -> None:
-        _write(solution, out, directory.absolute().stem, figures)
-
+    name = f"{directory.absolute().stem}.nc"
+    claim_result(frame, name)
     say_where(directory)
-    with keeping_partial_results(write), progress.progress_bar() as report:
+    write = partial(write_result, frame=frame, file_name=name, show=print_solution)
+    with frame.computing(keep=write, kept=RECORDED) as report:
         solution = completed(directory, progress=report)
-    write(solution, figures)
-
-
-def _write(solution: Solution, out: Path, name: str, figures: bool) -> None:
-    from fpsolve._support.files import made_folder
-    from fpsolve.cli.solution_table import print_solution
-
-    made_folder(out, "--out")
-    print_solution(solution)
-    ending = "" if solution.status == "finished" else f"-{solution.status}"
-    typer.echo(solution.save(out / f"{name}{ending}.nc"))
-    if figures:
-        from fpsolve.plotting.files import save_figures
-
-        for figure in save_figures(solution, out, prefix=f"{name}-"):
-            typer.echo(figure)
+    write(solution)

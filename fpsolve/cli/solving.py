@@ -2,29 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from fpsolve.cli.errors import FAILED, INTERRUPTED, fail, say
+from fpsolve.cli.console import print_lines, print_table
+from fpsolve.cli.errors import say
+from fpsolve.cli.writing import claim_result, write_result
 
 if TYPE_CHECKING:
     from fpsolve.cli.config.run import Problem, RunConfig
+    from fpsolve.cli.frame import Frame
     from fpsolve.density.checkpoints.checkpoint import Checkpoint
     from fpsolve.density.solution import Solution
 
-__all__ = ["keeping_partial_results", "say_where", "solve_and_write"]
+__all__ = ["RECORDED", "print_solution", "say_where", "solve_and_write"]
 
-# How the message of a solution begins that Ctrl-C left.
-_STOPPED = "stopped by the user"
+# What a run leaves that stops early.
+RECORDED = "what was recorded until then is kept"
 
 
 def solve_and_write(
+    frame: Frame,
     problem: Problem,
     config: RunConfig,
-    out: Path,
     checkpoint: Checkpoint | None = None,
     keep: bool = False,
 ) -> None:
@@ -32,35 +33,40 @@ def solve_and_write(
 
     Parameters
     ----------
+    frame : Frame
     problem : Problem
     config : RunConfig
         With grid and step in it.
-    out : Path
     checkpoint : Checkpoint, optional
     keep : bool
         Leave its folder when the result is written.
     """
     from fpsolve.cli.plan import print_plan, suggestions
-    from fpsolve.cli.writing import check_result
+    from fpsolve.density.solve import solve
 
-    check_result(config, out)
-    print_plan(config, problem, out)
+    name = config.output.file_name
+    frame.figures = config.output.figures
+    claim_result(frame, name)
+    print_plan(config, problem, frame.out)
 
-    def write(solution: Solution, figures: bool) -> None:
-        from fpsolve.cli.solution_table import print_solution
-        from fpsolve.cli.writing import write_result
-
+    def write(solution: Solution) -> None:
         reasons = suggestions(problem)
         if reasons:
             about = {**solution.provenance, "suggested": reasons}
             solution = replace(solution, provenance=about)
-        write_result(solution, config, out, figures=figures, show=print_solution)
+        write_result(solution, frame, name, print_solution, config.to_toml())
 
     if checkpoint is not None:
         say_where(checkpoint.folder)
-    with keeping_partial_results(write):
-        solution = _evolve(problem, checkpoint)
-    write(solution, config.output.figures)
+    with frame.computing(keep=write, kept=RECORDED) as report:
+        solution = solve(
+            problem.scheme,
+            problem.p0,
+            **problem.arguments,
+            progress=report,
+            checkpoint=checkpoint,
+        )
+    write(solution)
     if checkpoint is not None and not keep:
         from fpsolve.density.checkpoints.folder import remove_folder
 
@@ -81,43 +87,16 @@ def say_where(folder: Path) -> None:
         say(f"going on from `{folder}` at {status}")
 
 
-@contextmanager
-def keeping_partial_results(write: Callable[[Solution, bool], None]) -> Iterator[None]:
-    """Write what a run had recorded when it stops early, then exit."""
-    from fpsolve.errors import RunError, RunInterrupted
+def print_solution(solution: Solution) -> None:
+    """Print entropy, minimum, mass error and error estimates at some arclengths."""
+    from fpsolve.pages.solution import accuracy_lines, series_columns
 
-    try:
-        yield
-    except RunInterrupted as interrupt:
-        write(interrupt.solution, False)
-        how = interrupt.solution.message.removeprefix(_STOPPED)
-        fail(f"interrupted; what was recorded until then is kept{how}", INTERRUPTED)
-    except RunError as error:
-        if error.solution is not None:
-            _write_if_possible(error.solution, write)
-        fail(error, FAILED)
-
-
-def _write_if_possible(
-    solution: Solution, write: Callable[[Solution, bool], None]
-) -> None:
-    """Write a partial result; where there is no room, what stopped the run counts."""
-    try:
-        write(solution, False)
-    except OSError as error:
-        say(f"warning: what was recorded cannot be written: {error}")
-
-
-def _evolve(problem: Problem, checkpoint: Checkpoint | None) -> Solution:
-    # Not `from fpsolve.solve import solve`: a test replaces the bar in its module.
-    from fpsolve.cli import progress
-    from fpsolve.density.solve import solve
-
-    with progress.progress_bar() as report:
-        return solve(
-            problem.scheme,
-            problem.p0,
-            **problem.arguments,
-            progress=report,
-            checkpoint=checkpoint,
+    columns = series_columns(solution)
+    print_table(columns, zip(*columns.values(), strict=True))
+    print_lines(*accuracy_lines(solution))
+    seconds = solution.provenance
+    if "wall_seconds" in seconds:
+        print_lines(
+            f"{solution.status} after {seconds['wall_seconds']:.2f} s "
+            f"({seconds['cpu_seconds']:.2f} s of CPU time)"
         )

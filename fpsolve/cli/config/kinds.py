@@ -14,18 +14,9 @@ from fpsolve.density.schemes import drift_kick, semi_lagrangian
 from fpsolve.evolution.schedule import make_schedule
 from fpsolve.grids import initial
 from fpsolve.grids.phase_space import PhaseSpaceGrid
-from fpsolve.model.curves.belts import FixedBelt, MovingBelt
-from fpsolve.model.curves.nozzles import (
-    EllipticNozzle,
-    OscillatingNozzle,
-    RotatingNozzle,
-)
-from fpsolve.model.curves.table import TabulatedCurve
+from fpsolve.model.curves.dictionaries import KINDS as CURVES
 from fpsolve.model.laydown import LayDownModel
-from fpsolve.model.potentials.free import FreePotential
-from fpsolve.model.potentials.linear import LinearPotential
-from fpsolve.model.potentials.power import PowerPotential
-from fpsolve.model.potentials.quadratic import QuadraticPotential
+from fpsolve.model.potentials.dictionaries import KINDS as POTENTIALS
 from fpsolve.model.process import Process
 
 __all__ = [
@@ -47,6 +38,10 @@ _TOLERANCES = tuple(
 )
 _Numbers = tuple[float, ...]
 _Matrix = tuple[tuple[float, float], tuple[float, float]]
+# Types that a file may hold where the annotation of a curve says less.
+_IN_A_FILE = {
+    "tabulated_curve": {"s": _Numbers, "gamma1": _Numbers, "gamma2": _Numbers}
+}
 
 if TYPE_CHECKING:
     # The sections are made when this module is loaded; checkers know what they share.
@@ -58,33 +53,9 @@ if TYPE_CHECKING:
     GridSection: TypeAlias = Section
     ProcessSection: TypeAlias = Section
 else:
-    PotentialSection = one_of(
-        *(
-            section(potential, potential.kind)
-            for potential in (
-                QuadraticPotential,
-                LinearPotential,
-                PowerPotential,
-                FreePotential,
-            )
-        )
-    )
+    PotentialSection = one_of(*(section(POTENTIALS[kind], kind) for kind in POTENTIALS))
     CurveSection = one_of(
-        *(
-            section(curve, curve.kind)
-            for curve in (
-                FixedBelt,
-                MovingBelt,
-                RotatingNozzle,
-                OscillatingNozzle,
-                EllipticNozzle,
-            )
-        ),
-        section(
-            TabulatedCurve,
-            TabulatedCurve.kind,
-            {"s": _Numbers, "gamma1": _Numbers, "gamma2": _Numbers},
-        ),
+        *(section(CURVES[kind], kind, _IN_A_FILE.get(kind)) for kind in CURVES)
     )
     InitialSection = one_of(
         section(
