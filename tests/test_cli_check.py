@@ -61,7 +61,7 @@ def paths_of_more_noise(monkeypatch):
     def sampled(model, *arguments, **options):
         return sample_paths(replace(model, noise=1.2), *arguments, **options)
 
-    monkeypatch.setattr("fpsolve.paths.sample_paths", sampled)
+    monkeypatch.setattr("fpsolve.paths.sampling.sample_paths", sampled)
 
 
 def assert_mistake(result, message, code=2):
@@ -174,7 +174,7 @@ def test_ctrl_c_leaves_nothing(fpsolve_check, config, tmp_path, monkeypatch):
     def interrupted(*arguments, **options):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("fpsolve.paths.sample_paths", interrupted)
+    monkeypatch.setattr("fpsolve.paths.sampling.sample_paths", interrupted)
     result = fpsolve_check(config, "--n-paths", 2000)
     assert_mistake(result, "interrupted", code=130)
     assert files(tmp_path) == ["run.toml"]

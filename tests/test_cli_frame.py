@@ -59,7 +59,7 @@ def well(
         print_table(("ξ₁", "B"), ((f"{xi1:g}", f"{b:g}") for xi1, b in pairs))
         print_lines(chosen.formula)
         used = command_line("well", str(end), potential=chosen)
-        frame.finish(table, "well.nc", **used)
+        frame.finish(table.assign_attrs(used), "well.nc")
         frame.figure(drawn, table, name="well.png")
 
 

@@ -94,7 +94,7 @@ def check(
         used["configuration"] = chosen.resolved(problem).to_toml()
         numbers = json.dumps(result.to_dict(), indent=1, ensure_ascii=False)
         frame.text(numbers, f"{stem}.json")
-        frame.finish(result.to_xarray(), f"{stem}.nc", **used)
+        frame.finish(result.to_xarray().assign_attrs(used), f"{stem}.nc")
         frame.figure(plot_cross_check, result, name=f"{stem}.png")
         if not result.agrees:
             raise typer.Exit(FAILED)

@@ -76,7 +76,7 @@ def energy(
             "energy", potential=chosen, noise=noise, energies=energies,
             count=count,
         )  # fmt: skip
-        frame.finish(tables, "energy.nc", **used)
+        frame.finish(tables.assign_attrs(used), "energy.nc")
         for name, drawn in _FIGURES.items():
             draw = getattr(plotting, f"plot_{drawn}")
             frame.figure(draw, process, name=f"energy-{name}.png")

@@ -123,18 +123,18 @@ class Frame:
                 _keep_if_possible(error.solution, keep)
             fail(error, FAILED)
 
-    def finish(self, result: Any, name: str, **attributes: str) -> None:
-        """Write a result, or a dataset with more attributes, and print its path."""
-        typer.echo(self.save(result, name, **attributes))
+    def finish(self, result: Any, name: str) -> None:
+        """Write a result or a dataset, and print its path."""
+        typer.echo(self.save(result, name))
 
-    def save(self, result: Any, name: str, **attributes: str) -> Path:
+    def save(self, result: Any, name: str) -> Path:
         """Write it and print nothing."""
         import xarray as xr
 
         from fpsolve._support.netcdf import write_dataset
 
         if isinstance(result, xr.Dataset):
-            return write_dataset(result.assign_attrs(attributes), self.path(name))
+            return write_dataset(result, self.path(name))
         saved: Path = result.save(self.path(name))
         return saved
 

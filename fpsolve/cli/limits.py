@@ -95,8 +95,17 @@ def _study(
     options: dict[str, Any],
 ) -> xr.Dataset:
     """Compute, print, write and draw one limit."""
+    from fpsolve.plotting.limits import plot_large_noise
+    from fpsolve.plotting.small_noise import plot_small_noise
+    from fpsolve.studies.limits.large_noise import large_noise_limit
+    from fpsolve.studies.limits.small_noise import small_noise_limit
+
+    of: dict[str, tuple[Any, Any]] = {
+        LARGE: (large_noise_limit, plot_large_noise),
+        SMALL: (small_noise_limit, plot_small_noise),
+    }
+    compute, draw = of[name]
     noises = noise or (QUICK_NOISES if options["quick"] else NOISES)[name]
-    compute, draw = _of(name)
     file_name = f"{name}-{potential.kind}"
     with computing_cases(frame, file_name, name) as report:
         found: xr.Dataset = compute(
@@ -108,23 +117,10 @@ def _study(
         quick=options["quick"],
     )  # fmt: skip
     _print(found, name)
-    frame.finish(found, f"{file_name}.nc", **used)
+    frame.finish(found.assign_attrs(used), f"{file_name}.nc")
     if bool(found["distance"].notnull().any()):
         frame.figure(draw, found, name=f"{file_name}.png")
     return found
-
-
-def _of(name: str) -> tuple[Any, Any]:
-    """What computes a limit, and what draws it."""
-    if name == LARGE:
-        from fpsolve.plotting.limits import plot_large_noise
-        from fpsolve.studies.limits.large_noise import large_noise_limit
-
-        return large_noise_limit, plot_large_noise
-    from fpsolve.plotting.small_noise import plot_small_noise
-    from fpsolve.studies.limits.small_noise import small_noise_limit
-
-    return small_noise_limit, plot_small_noise
 
 
 def _print(dataset: xr.Dataset, name: str) -> None:

@@ -130,7 +130,7 @@ def _study(
         "rate", potential=potential, noise=noises, part=parts,
         quick=options["quick"], tolerance=options["tolerance"],
     )  # fmt: skip
-    frame.finish(found, f"{name}.nc", **used)
+    frame.finish(found.assign_attrs(used), f"{name}.nc")
     return found
 
 

@@ -73,6 +73,6 @@ def spectrum(
             tolerance=tolerance, belt_speed=belt_speed or None,
             memory_limit=memory_limit,
         )  # fmt: skip
-        again = recipe("spectrum", {"model": model, **options})
-        frame.finish(spectrum_dataset(found), names[0], **again, **used)
+        again = {**recipe("spectrum", {"model": model, **options}), **used}
+        frame.finish(spectrum_dataset(found).assign_attrs(again), names[0])
         frame.figure(plot_spectrum, found, name=names[1])
