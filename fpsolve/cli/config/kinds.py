@@ -10,7 +10,7 @@ from pydantic import model_validator
 
 from fpsolve._support.checks import check_tolerance
 from fpsolve.cli.config.sections import Section, one_of, section
-from fpsolve.density.schemes import drift_kick, semi_lagrangian
+from fpsolve.density.schemes.known import SCHEMES
 from fpsolve.evolution.schedule import make_schedule
 from fpsolve.grids import initial
 from fpsolve.grids.phase_space import PhaseSpaceGrid
@@ -65,9 +65,7 @@ else:
         ),
         section(initial.equilibrium, "equilibrium"),
     )
-    SchemeSection = one_of(
-        section(drift_kick, "drift_kick"), section(semi_lagrangian, "semi_lagrangian")
-    )
+    SchemeSection = one_of(*(section(SCHEMES[name], name) for name in SCHEMES))
     ModelSection = section(LayDownModel)
     GridSection = section(PhaseSpaceGrid)
     ProcessSection = section(Process)

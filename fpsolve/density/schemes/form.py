@@ -36,7 +36,8 @@ class State:
         Relative mass error removed in the last `advance`, signed.
     report : dict of float
         What the scheme tells of the last `advance` besides, each a series of the
-        solution: `theta`, the smallest weight of the adjusted advection.
+        solution if it is there from the start on: `theta`, the smallest weight of the
+        adjusted advection.
     n_steps : int
         Steps made since the start.
     scratch : object
