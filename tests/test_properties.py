@@ -30,8 +30,9 @@ FREELY = {
 
 @pytest.fixture(autouse=True)
 def quiet():
-    """A coarse cell may hold less or more of a start than asked for; no matter here."""
+    """A coarse cell may hold less or more of a start, or of p_S, than there is."""
     with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "`grid` must have cells that", UserWarning)
         warnings.filterwarnings("ignore", "the sampled Gaussian had mass", UserWarning)
         yield
 

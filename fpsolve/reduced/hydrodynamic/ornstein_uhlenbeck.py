@@ -159,5 +159,5 @@ def _arclengths(s: ArrayLike) -> Array:
     """s as an array of numbers s >= 0."""
     values = check_finite_numbers("s", s)
     if not (values >= 0.0).all():
-        raise ValueError(f"`s` must be non-negative, got {values.min():g}.")
+        raise ValueError(f"`s` must be non-negative and finite, got {values.min():g}.")
     return values
