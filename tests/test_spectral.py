@@ -1,5 +1,6 @@
 """Spectra of the generator against exact statements, definitions and dense algebra."""
 
+import gc
 import math
 import pickle
 
@@ -409,3 +410,16 @@ def test_a_tolerance_out_of_reach_of_the_memory_says_so():
         spectrum(quadratic(0.3), 3, memory_limit=2_000_000)
     assert caught.value.tolerance == 1e-10
     assert caught.value.reached > 1e-10
+
+
+def test_factors_go_when_nobody_needs_them():
+    # A circle of references would keep all of them until the garbage is collected.
+    model = fp.LayDownModel(fp.LinearPotential(), 0.5)
+    gc.collect()
+    gc.disable()
+    try:
+        spectral_gap(model, tolerance=1e-3)
+        left = [one for one in gc.get_objects() if type(one) is ShiftedInverse]
+    finally:
+        gc.enable()
+    assert left == []

@@ -66,14 +66,16 @@ class ShiftedInverse:
         self.dtype = np.float64 if real else np.complex128
         shift = self.shift.real if real else self.shift
         shifted = (self.matrix - shift * eye_array(self.size)).astype(self.dtype)
-        self.factors = factorised(shifted.tocsc(), self.work)
-        self.operator = LinearOperator(
-            shifted.shape, matvec=self._solve, dtype=self.dtype
-        )
+        factors = self.factors = factorised(shifted.tocsc(), self.work)
+        work, n = self.work, self.size
 
-    def _solve(self, right: Any) -> Any:
-        self.work.solved(self.size, self.factors.nnz)
-        return self.factors.solve(right)
+        # Not a method: what refers to this object and belongs to it keeps the factors
+        # in memory until the garbage is collected.
+        def solve(right: Any) -> Any:
+            work.solved(n, factors.nnz)
+            return factors.solve(right)
+
+        self.operator = LinearOperator(shifted.shape, matvec=solve, dtype=self.dtype)
 
     def eigenpairs(
         self, n: int, start: Any = None, tolerance: float = 0.0
