@@ -118,4 +118,6 @@ def test_bad_input_of_a_spectrum_is_one_line(call, tmp_path):
     tight = ("--noise", 0.3, "--tolerance", 1e-12, "--memory-limit", 1)
     result = call(spectrum, *tight)
     assert_mistake(result, "error: ", code=1)
+    little = call(spectrum, "--noise", 0.3, "--work-limit", 1e4)
+    assert_mistake(little, "where 1e+04 is allowed", code=1)
     assert files(tmp_path) == []

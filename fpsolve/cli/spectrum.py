@@ -29,6 +29,14 @@ Memory = Annotated[
         show_default="256",
     ),
 ]
+WorkLimit = Annotated[
+    float | None,
+    typer.Option(
+        metavar="N",
+        help="Numbers gone through before it is refused; 1e10 take some 20 s.",
+        show_default="1e10",
+    ),
+]
 
 
 @with_parameters
@@ -40,6 +48,7 @@ def spectrum(
     belt_speed: BeltSpeed = 0.0,
     parameters: Parameters = PARAMETERS,
     memory_limit: Memory = None,
+    work_limit: WorkLimit = None,
     out: Out = Path("results"),
     no_figures: NoFigures = False,
 ) -> None:
@@ -65,13 +74,15 @@ def spectrum(
         if memory_limit is not None:
             limit = check_positive("--memory-limit", memory_limit) * 2**20
             options["memory_limit"] = math.ceil(limit)
+        if work_limit is not None:
+            options["work_limit"] = check_positive("--work-limit", work_limit)
         found = compute(model, **options)
         typer.echo(str(found))
         typer.echo(f"gap {found.gap:.12g} ± {found.gap_error:.1g}")
         used = command_line(
             "spectrum", potential=chosen, noise=noise, count=count,
             tolerance=tolerance, belt_speed=belt_speed or None,
-            memory_limit=memory_limit,
+            memory_limit=memory_limit, work_limit=work_limit,
         )  # fmt: skip
         again = {**recipe("spectrum", {"model": model, **options}), **used}
         frame.finish(spectrum_dataset(found).assign_attrs(again), names[0])

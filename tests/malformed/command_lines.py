@@ -112,6 +112,7 @@ SPECTRUM = [
     row("spectrum --belt-speed 10", "got 10", "strictly between -1 and 1"),
     row("spectrum --count 5000", "got 5000", "at most 1000"),
     row("spectrum --memory-limit -1", "got -1", "`--memory-limit` must be positive"),
+    row("spectrum --work-limit 0", "got 0", "`--work-limit` must be positive"),
     row("spectrum --memory-limit nan", "got nan", "`--memory-limit` must be positive"),
     row("spectrum --potential power --exponent 0.5", "got 0.5", "at least 1"),
     row("spectrum --potential linear --slope -1", "got -1", "must be positive"),
