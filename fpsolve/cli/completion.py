@@ -7,7 +7,7 @@ from collections.abc import Callable
 __all__ = ["CONFINING", "EXAMPLES", "PARTS", "proposing"]
 
 # Written out, because a shell waits for the answer: the modules that know these words
-# take half a second to import. tests/test_cli_completion.py holds them together.
+# take half a second to import. tests/cli/test_cli_completion.py holds them together.
 EXAMPLES = ("laydown", "spunbond")
 CONFINING = ("quadratic", "linear", "power")
 PARTS = ("relaxation", "evolution", "branches", "gap", "variance")

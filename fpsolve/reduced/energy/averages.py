@@ -24,7 +24,7 @@ Integrand = Callable[[Array, Array, Array], Array]
 OfOrbit = Callable[[Array, Array], ArrayLike]
 
 # Gauss points on either side of the circle: doubling them changes no integral by more
-# than 1e-12 (tests/test_energy_process.py).
+# than 1e-12 (tests/reduced/test_energy_process.py).
 _N_POINTS = 96
 # δ, in units of ln r: how closely the points look at the circle.
 _SCALE = 0.1

@@ -62,7 +62,7 @@ def lines_of(layer, script, *more):
     environment = {
         **os.environ,
         "NUMBA_THREADING_LAYER": layer,
-        "PYTHONPATH": str(Path(__file__).parents[1]),
+        "PYTHONPATH": str(Path(__file__).parents[2]),
     }
     # Newer Pythons warn of any fork while there are threads.
     command = [sys.executable, "-W", "ignore::DeprecationWarning", "-c", script, *more]

@@ -13,7 +13,7 @@ import fpsolve as fp
 from fpsolve.cli.config import PathsConfig, load_config
 from fpsolve.pages.numbers import with_error
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 CONFIG = """
 [potential]
 kind = "quadratic"

@@ -10,7 +10,7 @@ import pytest
 
 import fpsolve as fp
 
-PAGE = Path(__file__).parents[1] / "docs/api.md"
+PAGE = Path(__file__).parents[2] / "docs/api.md"
 DIRECTIVE = re.compile(r"^\.\. auto(module|class|function):: (\S+)$", re.MULTILINE)
 
 

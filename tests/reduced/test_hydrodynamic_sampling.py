@@ -50,7 +50,7 @@ def test_heun_is_weakly_of_order_two_at_every_halving():
     # The error of an order from those of the two biases.
     spread = np.hypot(errors[:-1] / biases[:-1], errors[1:] / biases[1:]) / math.log(2)
     orders = np.log2(biases[:-1] / biases[1:])
-    # 0.3 is the next term at h = 1/2, as in tests/orders.py.
+    # 0.3 is the next term at h = 1/2, as in tests/support/orders.py.
     assert np.all(np.abs(orders - 2) < 0.3 + MANY * spread)
     assert np.all(MANY * spread < 0.1)
 

@@ -25,7 +25,7 @@ import fpsolve as fp
 from fpsolve import studies
 from fpsolve._support.blas import one_blas_thread
 
-HERE = Path(__file__).parent
+HERE = Path(__file__).parents[1] / "support"
 
 
 @pytest.fixture(scope="module")

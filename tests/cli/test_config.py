@@ -142,7 +142,7 @@ def test_examples_build_and_survive_writing(name):
 
 
 def test_the_configurations_in_the_documentation_build():
-    page = Path(__file__).parents[1] / "docs" / "command_line.md"
+    page = Path(__file__).parents[2] / "docs" / "command_line.md"
     blocks = re.findall(r"```toml\n(.*?)```", page.read_text("utf-8"), re.DOTALL)
     run, process, paths = blocks
     assert read_config(run).build().scheme.options["positive"]

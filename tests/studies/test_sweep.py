@@ -337,8 +337,8 @@ def test_a_script_without_a_guard_whose_own_function_is_needed_is_told_so(tmp_pa
 def run_script(folder, text):
     script = folder / "script.py"
     script.write_text(textwrap.dedent(text))
-    here = Path(__file__).parent
-    path = os.pathsep.join([str(here), str(here.parent)])
+    tests = Path(__file__).parents[1]
+    path = os.pathsep.join([str(tests / "support"), str(tests.parent)])
     return subprocess.run(
         [sys.executable, str(script)], capture_output=True, text=True, check=False,
         env={**os.environ, "PYTHONPATH": path},

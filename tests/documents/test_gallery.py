@@ -7,7 +7,7 @@ import pytest
 import xarray as xr
 from matplotlib.figure import Figure
 
-FOLDER = Path(__file__).parents[1] / "docs/gallery"
+FOLDER = Path(__file__).parents[2] / "docs/gallery"
 SCRIPTS = sorted(FOLDER.glob("*.py"))
 
 

@@ -235,7 +235,7 @@ def test_unknown_and_missing_parameters_of_a_stored_model_are_named():
 
 
 def test_the_examples_of_the_model_page_run_as_printed():
-    page = Path(__file__).parents[1] / "docs" / "model.md"
+    page = Path(__file__).parents[2] / "docs" / "model.md"
     result = doctest.testfile(str(page), module_relative=False)
     assert result.attempted > 0
     assert result.failed == 0

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from PIL import Image
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 FOLDER = ROOT / "validation/performance"
 FILES = sorted((FOLDER / "results").glob("benchmark-*.json"))
 NOISES = ("0.3", "1", "3")

@@ -10,7 +10,7 @@ from command_line import COMPILING, HANGS
 def test_the_example_leaves_nothing_unclosed_and_nothing_deprecated(tmp_path):
     # Development mode tells of files and processes that were not closed; every warning,
     # of whatever library, is an error here.
-    example = Path(__file__).parents[1] / "fpsolve/examples/laydown.toml"
+    example = Path(__file__).parents[2] / "fpsolve/examples/laydown.toml"
     # On an eighth of its cells, which is as talkative.
     text = example.read_text("utf-8")
     assert "shape = [64, 64, 32]" in text

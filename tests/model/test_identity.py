@@ -6,7 +6,6 @@ import subprocess
 import sys
 from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
 
 import numba
 import numpy as np
@@ -170,12 +169,14 @@ def test_equal_things_built_twice_are_one_and_others_are_not(kind):
 def test_an_identity_is_the_same_in_another_process():
     # Sets and hashes of texts come in another order there.
     asks = (
-        "import sys; sys.path.insert(0, sys.argv[1])\n"
-        "import test_identity as t\n"
+        "import importlib.util, sys\n"
+        "spec = importlib.util.spec_from_file_location(*sys.argv[1:])\n"
+        "t = sys.modules[sys.argv[1]] = importlib.util.module_from_spec(spec)\n"
+        "spec.loader.exec_module(t)\n"
         "print(*(t.identity_digest(make(1.0)) for make in t.MAKERS.values()))"
     )
     told = subprocess.run(
-        [sys.executable, "-c", asks, str(Path(__file__).parent)],
+        [sys.executable, "-c", asks, __name__, __file__],
         capture_output=True, text=True, check=True,
     )  # fmt: skip
     here = [identity_digest(make(1.0)) for make in MAKERS.values()]

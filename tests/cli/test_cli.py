@@ -14,7 +14,7 @@ from solutions import relaxing_solution
 import fpsolve as fp
 from fpsolve.cli.config import load_config
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 CONFIG = """
 [potential]
 kind = "quadratic"

@@ -1,6 +1,6 @@
 """Every public name with its signature, as text; run it to write the snapshot anew.
 
-python tests/house/public_names.py > tests/house/public_names.txt
+python tests/support/public_names.py > tests/house/public_names.txt
 """
 
 import inspect
