@@ -36,10 +36,10 @@ _INTEGERS = (
 # JSON: objects, and what is known of their entries.
 _TABLES = (
     "model", "grid", "scheme", "initial", "potential", "p0", "settings", "options",
-    "solver", "sampler", "versions", "environment", "provenance", "repeat",
+    "solver", "sampler", "versions", "environment", "provenance", "call",
     "fpsolve_checksums",
 )  # fmt: skip
-_LISTS = ("saved_steps", "truncation", "fpsolve_attributes")
+_LISTS = ("saved_steps", "truncation", "sectors", "fpsolve_attributes")
 OWN = frozenset((*_TEXTS, *_NUMBERS, *_INTEGERS, *_TABLES, *_LISTS))
 
 
@@ -130,7 +130,7 @@ def _types() -> TypeAdapter[Any]:
         "scheme": _entries("Scheme", {"name": str, "order": int, "options": _TABLE}),
         "initial": start, "p0": start, "versions": _TEXTS_BY_NAME,
         "environment": _environment_type(), "provenance": _provenance_type(),
-        "repeat": _entries("Repeat", {"function": str, "arguments": _TABLE}),
+        "call": _entries("Call", {"function": str, "arguments": _TABLE}),
         "fpsolve_checksums": _TEXTS_BY_NAME,
     }))  # fmt: skip
 

@@ -22,6 +22,7 @@ __all__ = [
     "made_with",
     "marked",
     "origin",
+    "read_provenance",
     "to_json",
 ]
 
@@ -63,7 +64,15 @@ def origin(provenance: Mapping[str, Any]) -> dict[str, Any]:
     flat = {f"{package}_version": number for package, number in versions.items()}
     if "date" in own:
         flat["date_created"] = own["date"]
+    if "command" in own:
+        flat["command"] = own.pop("command")
     return {**flat, "provenance": to_json(own)}
+
+
+def read_provenance(about: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the provenance of a result from the attributes that `origin` wrote."""
+    command = {"command": about["command"]} if "command" in about else {}
+    return {**about["provenance"], **command}
 
 
 def check_complete(

@@ -54,16 +54,17 @@ class Stopwatch:
         """Wall and CPU time."""
         return time.perf_counter() - self.wall, time.process_time() - self.cpu
 
-    def provenance(self, n_steps: int) -> dict[str, Any]:
+    def provenance(self, n_steps: int | None = None) -> dict[str, Any]:
         """Versions, environment, date, seconds, number of steps, ready for a file."""
         wall, cpu = self.seconds()
+        steps = {} if n_steps is None else {"n_steps": n_steps}
         return {
             "versions": versions(),
             "environment": environment(),
             "date": datetime.now(UTC).isoformat(timespec="seconds"),
             "wall_seconds": wall,
             "cpu_seconds": cpu,
-            "n_steps": n_steps,
+            **steps,
         }
 
 

@@ -28,12 +28,6 @@ Movie = Annotated[
     bool, typer.Option("--movie", help="Also make a movie (GIF) of a density.")
 ]
 FramesPerSecond = Annotated[float, typer.Option(help="Frames per second of the movie.")]
-# What has no movie, in words.
-_KINDS = {
-    "paths": "paths",
-    "hydrodynamic": "a solution of the hydrodynamic limit",
-    "energy": "a law of the energy",
-}
 
 
 def plot(
@@ -45,13 +39,13 @@ def plot(
         from fpsolve.density.solution import Solution
         from fpsolve.plotting.movie import check_movie
         from fpsolve.results import load
-        from fpsolve.results.kinds import kind_of
+        from fpsolve.results.kinds import KINDS, kind_of
 
         result = load(file)
         if movie and not isinstance(result, Solution):
             raise ValueError(
                 "`--movie` must be given with the result of `fpsolve run`, got "
-                f"{_KINDS[kind_of(result)]} in `{file}`; leave it out."
+                f"{KINDS[kind_of(result)].words} in `{file}`; leave it out."
             )
         folder = file.parent if out is None else out
         if movie:

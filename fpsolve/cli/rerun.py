@@ -31,10 +31,6 @@ Workers = Annotated[
         min=0, help="Processes of a study; 0 runs in this one.", show_default="CPUs"
     ),
 ]
-# Studies of many cases, which take `workers`.
-_SWEEPS = ("rate", "large-noise", "small-noise")
-# What is repeated without a bar.
-_SILENT = ("spectrum", "energy-tables", "small-noise-spectrum")
 # What a part of the paths has in common with all of them.
 _OF_EVERY_PATH = ("xi", "tau", "turns", "alpha", "start_xi", "start_tau", "start_turns")
 
@@ -54,6 +50,7 @@ def rerun(
     """
     with command(out) as frame:
         from fpsolve.results.compare.reading import dataset_of, kind_of_dataset
+        from fpsolve.results.kinds import KINDS
 
         old = dataset_of(file, "FILE")
         kind = kind_of_dataset(old, "FILE")
@@ -62,7 +59,7 @@ def rerun(
         frame.claim(target.name)
         set_threads(threads)
         _announce(old, kind, status)
-        given = workers is not None and kind in _SWEEPS
+        given = workers is not None and KINDS[kind].counts == "cases"
         options = {"workers": workers} if given else {}
         frame.finish(_repeat(frame, file, kind, options), target.name)
         _judge(_compared(file, target), status)
@@ -81,23 +78,25 @@ def _target(file: Path, out: Path, status: str) -> Path:
 
 
 def _announce(old: xr.Dataset, kind: str, status: str) -> None:
-    from fpsolve.results.compare.reading import KINDS
+    from fpsolve.results.kinds import KINDS
 
     about = old.attrs.get("command") or old.attrs.get("equation") or ""
-    typer.echo(f"repeating {KINDS[kind]}: {about}".rstrip(": "))
+    typer.echo(f"repeating {KINDS[kind].words}: {about}".rstrip(": "))
     if status != "finished":
         article = "an" if status == "interrupted" else "a"
         typer.echo(f"the file holds {article} {status} run; the whole is repeated")
 
 
 def _repeat(frame: Frame, file: Path, kind: str, options: dict[str, Any]) -> Any:
+    from fpsolve.results.kinds import KINDS
     from fpsolve.results.rerun.repeating import rerun as repeat
 
+    counts = KINDS[kind].counts
     bar: AbstractContextManager[Any] | None = None
-    if kind in (*_SWEEPS, *_SILENT):
-        bar = case_bar(kind) if kind in _SWEEPS else nullcontext()
+    if counts in ("", "cases"):
+        bar = case_bar(kind) if counts else nullcontext()
     with frame.computing(bar=bar, kept="nothing was written") as report:
-        progress = {} if kind in _SILENT else {"progress": report}
+        progress = {"progress": report} if counts else {}
         return repeat(file, **progress, **options)
 
 

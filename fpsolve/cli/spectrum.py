@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -63,9 +64,7 @@ def spectrum(
         from fpsolve.model.curves.belts import FixedBelt, MovingBelt
         from fpsolve.model.laydown import LayDownModel
         from fpsolve.plotting.rates import plot_spectrum
-        from fpsolve.spectral.eigen.dataset import spectrum_dataset
         from fpsolve.spectral.eigen.spectrum import spectrum as compute
-        from fpsolve.studies.recipe import recipe
 
         curve = MovingBelt(belt_speed) if belt_speed else FixedBelt()
         chosen = parameters.make(potential)
@@ -84,6 +83,6 @@ def spectrum(
             tolerance=tolerance, belt_speed=belt_speed or None,
             memory_limit=memory_limit, work_limit=work_limit,
         )  # fmt: skip
-        again = {**recipe("spectrum", {"model": model, **options}), **used}
-        frame.finish(spectrum_dataset(found).assign_attrs(again), names[0])
+        found = replace(found, provenance={**found.provenance, **used})
+        frame.finish(found, names[0])
         frame.figure(plot_spectrum, found, name=names[1])

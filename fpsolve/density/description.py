@@ -21,7 +21,13 @@ from fpsolve.model.identity.digests import digest_or_none
 from fpsolve.model.laydown import LayDownModel
 from fpsolve.model.potentials.samples import digest_of_potential
 
-__all__ = ["CODE", "RunDescription", "describe_scheme", "run_arguments"]
+__all__ = [
+    "CODE",
+    "RunDescription",
+    "describe_scheme",
+    "described_scheme",
+    "run_arguments",
+]
 
 Array = NDArray[np.float64]
 
@@ -209,6 +215,14 @@ def describe_scheme(scheme: Scheme) -> dict[str, Any]:
         "options": dict(scheme.options),
         **({} if kind in SCHEMES.values() else {CODE: _code_of(kind)}),
     }
+
+
+def described_scheme(scheme: Any) -> Any:
+    """Return what a call says of a scheme; of a model in its place, the model."""
+    if scheme is None or isinstance(scheme, LayDownModel):
+        return scheme
+    about = describe_scheme(scheme)
+    return {"$scheme": {"scheme": about, "model": scheme.model, "grid": scheme.grid}}
 
 
 def _code_of(kind: type[Any]) -> str | None:

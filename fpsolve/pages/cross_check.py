@@ -7,17 +7,15 @@ from typing import TYPE_CHECKING, Any
 from fpsolve.pages.blocks import (
     Block,
     Facts,
-    Figure,
     Notice,
     Paragraph,
     Part,
     Section,
     Table,
 )
-from fpsolve.pages.equations import model_equations
-from fpsolve.pages.figures import embedded
+from fpsolve.pages.figures import drawings
 from fpsolve.pages.origin import provenance_part
-from fpsolve.pages.settings import curve_text, grid_text
+from fpsolve.pages.settings import grid_text, model_facts, model_or_unread
 
 if TYPE_CHECKING:
     from fpsolve.studies.agreement.check import CrossCheck
@@ -34,20 +32,26 @@ HEADINGS = (
     "tests failed",
 )
 
+_FIGURE = (
+    "Marginals of the density (lines) and of the paths (points); beneath, the "
+    "deviation of every cell in standard deviations.",
+    "Marginals of density and paths with their deviations",
+)
 
-def section(check: CrossCheck, source: str, origin: dict[str, Any]) -> Section:
+
+def section(check: CrossCheck, source: str) -> Section:
     """Return the section of a page about a cross-check."""
     from fpsolve.studies.agreement.wording import verdict
 
     tone = "good" if check.agrees else "bad"
-    equations = [] if check.model is None else model_equations(check.model)
+    equations = model_or_unread(check.model, check.provenance)
     parts = [
         Part("Summary", [Notice(verdict(check), tone), *_words(check)]),
         Part("Equation", equations),
         Part("Parameters", [Facts(_parameters(check))]),
         Part("Tests", [_summary(check), _moments(check)]),
-        Part("Figure", [_figure(check)]),
-        provenance_part(origin),
+        Part("Figure", drawings(check, {"check": _FIGURE})),
+        provenance_part(check.provenance, call=check.call),
     ]
     return Section(
         "Density against paths", source, [part for part in parts if part.blocks]
@@ -83,15 +87,8 @@ def _words(check: CrossCheck) -> list[Block]:
 def _parameters(check: CrossCheck) -> list[tuple[str, str]]:
     model, solver, sampler = check.model, check.solver, check.sampler
     also = " and ds/2, extrapolated" if solver["extrapolated"] else ", not extrapolated"
-    items: list[tuple[str, str]] = []
-    if model is not None:
-        items += [
-            ("potential", f"B = {model.potential.formula}"),
-            ("noise", f"A = {model.noise:g}"),
-            ("reference curve", curve_text(model.curve)),
-        ]
     return [
-        *items,
+        *model_facts(model),
         ("grid", grid_text(check.grid)),
         ("density", f"{solver['name']}, ds = {solver['ds']:.4g}{also}"),
         ("paths", f"{check.n_paths:,}".replace(",", " ") + _sampler(sampler)),
@@ -132,14 +129,3 @@ def _moments(check: CrossCheck) -> Table:
         "Step error: of density and paths together; a dash where it is not estimated.",
         words=frozenset({1}),
     )  # fmt: skip
-
-
-def _figure(check: CrossCheck) -> Figure:
-    from fpsolve.plotting.comparison import plot_cross_check
-
-    return embedded(
-        lambda: plot_cross_check(check),
-        "Marginals of the density (lines) and of the paths (points); beneath, the "
-        "deviation of every cell in standard deviations.",
-        "Marginals of density and paths with their deviations",
-    )

@@ -5,15 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from fpsolve._support.declared import declared
-from fpsolve.pages.blocks import Block, Facts, Figure, Paragraph, Part, Section, Table
+from fpsolve.pages.blocks import Block, Facts, Paragraph, Part, Section, Table
 from fpsolve.pages.equations import energy_equations, potential_equation
-from fpsolve.pages.figures import embedded
+from fpsolve.pages.figures import drawings
 from fpsolve.pages.studies import potential_of, versions_part
 
 if TYPE_CHECKING:
     import xarray as xr
-
-    from fpsolve.reduced.energy.process import EnergyProcess
 
 __all__ = ["COEFFICIENTS", "section"]
 
@@ -26,12 +24,26 @@ COEFFICIENTS = {
     "variance": "σ²(g)",
     "stationary_density": "density S/∫S",
 }
+_FIGURES = {
+    "orbits": (
+        "Orbits of the deterministic motion and their fibres.",
+        "Level curves of the energy and fibres of some energies",
+    ),
+    "coefficients": (
+        "Period and variance against energy.",
+        "Curves of period and variance against energy",
+    ),
+    "eigenfunctions": (
+        "Slowest modes of both families.",
+        "Curves of the slowest eigenfunctions against energy",
+    ),
+}
 _FAMILIES = {"even": "of |G|", "odd": "of the sign of G"}
 
 
 def section(dataset: xr.Dataset, source: str) -> Section:
     """Return the section of a page about the tables of `fpsolve energy`."""
-    about, process = declared(dataset.attrs), _process(dataset)
+    about = declared(dataset.attrs)
     items = [
         ("potential", f"B = {about['formula']}"),
         ("noise", f"A = {about['noise']:g}"),
@@ -46,11 +58,11 @@ def section(dataset: xr.Dataset, source: str) -> Section:
         "By quadrature to rounding, on a belt at rest.",
     )  # fmt: skip
     parts = [
-        Part("Equation", _equations(process)),
+        Part("Equation", _equations(dataset)),
         Part("Parameters", [Facts(items)]),
         Part("Coefficients", [coefficients]),
         Part("Decay rates", [_rates(dataset)]),
-        Part("Figures", _figures(process)),
+        Part("Figures", drawings(dataset, _FIGURES)),
         versions_part(dataset),
     ]
     return Section(
@@ -60,24 +72,14 @@ def section(dataset: xr.Dataset, source: str) -> Section:
     )
 
 
-def _process(dataset: xr.Dataset) -> EnergyProcess | None:
-    """Return the process the tables are of; None for a user's own potential."""
-    from fpsolve.reduced.energy.process import EnergyProcess
-
+def _equations(dataset: xr.Dataset) -> list[Block]:
     potential = potential_of(dataset)
-    if potential is None:
-        return None
-    return EnergyProcess(potential, declared(dataset.attrs)["noise"])
-
-
-def _equations(process: EnergyProcess | None) -> list[Block]:
     said = Paragraph(
         "G = r exp(-B(r)) sin β, β the angle between fibre and radius; S is the period "
         "of an orbit, J its action."
     )
-    if process is None:
-        return [*energy_equations(), said]
-    return [*energy_equations(), potential_equation(process.potential), said]
+    known = [] if potential is None else [potential_equation(potential)]
+    return [*energy_equations(), *known, said]
 
 
 def _rates(dataset: xr.Dataset) -> Table:
@@ -95,22 +97,3 @@ def _rates(dataset: xr.Dataset) -> Table:
         "Decay rates of the averaged equation (16) per unit of s.",
         ("family", "mode", "rate", "error"), rows, words=frozenset({0}),
     )  # fmt: skip
-
-
-def _figures(process: EnergyProcess | None) -> list[Figure]:
-    from fpsolve.plotting import energy as plotting
-
-    if process is None:
-        return []
-    drawings = (
-        (plotting.plot_orbits, "Orbits of the deterministic motion and their fibres.",
-         "Level curves of the energy and fibres of some energies"),
-        (plotting.plot_energy_coefficients, "Period and variance against energy.",
-         "Curves of period and variance against energy"),
-        (plotting.plot_energy_eigenfunctions, "Slowest modes of both families.",
-         "Curves of the slowest eigenfunctions against energy"),
-    )  # fmt: skip
-    return [
-        embedded(lambda plot=plot: plot(process), caption, alt)  # type: ignore[misc]
-        for plot, caption, alt in drawings
-    ]

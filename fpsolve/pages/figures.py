@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import base64
 import io
-from collections.abc import Callable
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any
 
 from fpsolve.pages.blocks import Figure
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Drawing
 
-__all__ = ["embedded"]
+__all__ = ["drawings", "embedded"]
 
 # A drawing of many thousand points is smaller, and faster to show, as a picture.
 LARGEST_SVG = 600_000
@@ -41,6 +41,23 @@ def embedded(draw: Callable[[], Drawing], caption: str, alt: str) -> Figure:
     source = f"data:image/{kind};base64,{base64.b64encode(data).decode('ascii')}"
     width = round(drawing.get_figwidth() * PIXELS_PER_INCH * ENLARGEMENT)
     return Figure(source, width, caption, alt)
+
+
+def drawings(result: Any, words: Mapping[str, tuple[str, str]]) -> list[Figure]:
+    """Return the figures that a result allows, as blocks.
+
+    Parameters
+    ----------
+    result : object
+    words : mapping
+        Caption and alternative text of each, by its name in `plotting.kinds`.
+    """
+    from fpsolve.plotting.files import possible_figures
+
+    return [
+        embedded(lambda draw=draw: draw(result), *words[name])  # type: ignore[misc]
+        for name, draw in possible_figures(result).items()
+    ]
 
 
 def _svg(drawing: Drawing) -> bytes:

@@ -10,7 +10,6 @@ from fpsolve.pages.blocks import (
     Block,
     Equation,
     Facts,
-    Figure,
     Notice,
     Paragraph,
     Part,
@@ -18,7 +17,7 @@ from fpsolve.pages.blocks import (
     Table,
 )
 from fpsolve.pages.equations import energy_equations, mathml, potential_equation
-from fpsolve.pages.figures import embedded
+from fpsolve.pages.figures import drawings
 from fpsolve.pages.numbers import evenly, formatted
 from fpsolve.pages.origin import provenance_part, status_notice
 from fpsolve.pages.settings import curve_text, unread_model
@@ -58,7 +57,9 @@ def hydrodynamic_section(solution: HydrodynamicSolution, source: str) -> Section
     return _section(
         "Hydrodynamic limit of much noise", source, solution,
         _hydrodynamic_equations(solution), items,
-        (caption, "Maps of the density, and curves of entropy, means and spread"),
+        {"hydrodynamic": (
+            caption, "Maps of the density, and curves of entropy, means and spread"
+        )},
     )  # fmt: skip
 
 
@@ -76,8 +77,8 @@ def energy_section(solution: EnergySolution, source: str) -> Section:
     return _section(
         "Law of the energy in the limit of little noise", source, solution, equations,
         items,
-        ("Law of the energy at saved s; dashed: the stationary law.",
-         "Curves of the density of the energy, and of its entropy"),
+        {"law": ("Law of the energy at saved s; dashed: the stationary law.",
+                 "Curves of the density of the energy, and of its entropy")},
     )  # fmt: skip
 
 
@@ -87,7 +88,7 @@ def _section(
     solution: Any,
     equations: list[Any],
     items: list[tuple[str, str]],
-    figure: tuple[str, str],
+    figure: Mapping[str, tuple[str, str]],
 ) -> Section:
     parts = [
         Part("Summary", _summary(solution)),
@@ -95,7 +96,7 @@ def _section(
         Part("Parameters", [Facts(items)]),
         Part("Numbers at saved arclengths", _numbers(solution)),
         Part("Accuracy", _accuracy(solution)),
-        Part("Figures", _figures(solution, *figure)),
+        Part("Figures", drawings(solution, figure)),
         provenance_part(solution.provenance),
     ]
     return Section(title, source, [part for part in parts if part.blocks])
@@ -180,12 +181,3 @@ def _accuracy(solution: Any) -> list[Block]:
         ("quantity", "at most"), rows, words=frozenset({0}),
     )  # fmt: skip
     return [table]
-
-
-def _figures(solution: Any, caption: str, alt: str) -> list[Figure]:
-    from fpsolve.plotting.files import possible_figures
-
-    return [
-        embedded(lambda draw=draw: draw(solution), caption, alt)  # type: ignore[misc]
-        for draw in possible_figures(solution).values()
-    ]

@@ -10,7 +10,6 @@ from fpsolve.pages.blocks import (
     Block,
     Equation,
     Facts,
-    Figure,
     Paragraph,
     Part,
     Section,
@@ -22,13 +21,19 @@ from fpsolve.pages.equations import (
     mathml,
     potential_equation,
 )
-from fpsolve.pages.figures import embedded
+from fpsolve.pages.figures import drawings
 from fpsolve.pages.studies import cases_blocks, entries, potential_of, versions_part
 
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["large_rows", "large_section", "small_rows", "small_section"]
+__all__ = [
+    "large_rows",
+    "large_section",
+    "small_rows",
+    "small_section",
+    "spectrum_section",
+]
 
 _LARGE_NOTE = (
     "Orders are in ε = 1/A²; *: below three times its numerical error, so that the "
@@ -38,6 +43,16 @@ _SMALL_NOTE = (
     "± cells: error of the cells of the grid, at most. Orders are in A². Paths: "
     "distance by paths, and what chance alone gives. A dash: not known."
 )
+_FIGURES = {
+    "distances": (
+        "Distances against the small parameter; thin lines: the slope that is derived.",
+        "Distances to the limit against the small parameter, logarithmic",
+    ),
+    "spectrum": (
+        "Slowest real rates of the sectors M = 0 over A²; dashed: the energy process.",
+        "Rates of both families against noise",
+    ),
+}
 
 
 def large_section(dataset: xr.Dataset, source: str) -> Section:
@@ -102,6 +117,48 @@ def small_section(dataset: xr.Dataset, source: str) -> Section:
     return _section(
         "Limit of little noise", source, dataset, limit, items, [said, table]
     )
+
+
+def spectrum_section(dataset: xr.Dataset, source: str) -> Section:
+    """Return the section of a page about spectra in the limit of little noise."""
+    about = declared(dataset.attrs)
+    potential = potential_of(dataset)
+    known = [] if potential is None else [potential_equation(potential)]
+    items = [
+        ("potential", f"B = {about['formula']}"),
+        ("noises", _noises(dataset)),
+        ("tolerance", f"{about['tolerance']:g}"),
+    ]
+    table = _table(
+        "Slowest real rate of the sector M = 0 over A², even and odd under reflection.",
+        _rate_rows(dataset),
+        "Limit: the rate of |G| (even) and of signed G (odd) in the energy process. A "
+        "dash: no basis that fits resolves it.",
+        words=frozenset({0}),
+    )  # fmt: skip
+    parts = [
+        Part("Equation and its limit", [fokker_planck(), *known, *energy_equations()]),
+        Part("Parameters", [Facts(items)]),
+        Part("Rates", [table]),
+        Part("Figure", drawings(dataset, _FIGURES)),
+        versions_part(dataset),
+    ]
+    return Section("Spectrum in the limit of little noise", source, parts)
+
+
+def _rate_rows(dataset: xr.Dataset) -> list[dict[str, str]]:
+    rows = []
+    for family in dataset["family"].to_numpy():
+        one = dataset.sel(family=family)
+        row = {"family": str(family)}
+        for noise in dataset["noise"].to_numpy():
+            rate, error = (float(one[name].sel(noise=noise)) for name in
+                           ("rate", "rate_error"))  # fmt: skip
+            known = math.isfinite(rate)
+            row[f"A = {noise:g}"] = f"{rate:.6g} ± {error:.1g}" if known else "-"
+        row["limit"] = f"{float(one['limit']):.6g} ± {float(one['limit_error']):.1g}"
+        rows.append(row)
+    return rows
 
 
 def large_rows(dataset: xr.Dataset) -> list[dict[str, str]]:
@@ -174,21 +231,7 @@ def _section(
         Part("Equation and its limit", [fokker_planck(), *known, *limit]),
         Part("Parameters", [Facts(items)]),
         Part("Distances", distances),
-        Part("Figures", _figures(dataset)),
+        Part("Figures", drawings(dataset, _FIGURES)),
         versions_part(dataset),
     ]
     return Section(title, source, [part for part in parts if part.blocks])
-
-
-def _figures(dataset: xr.Dataset) -> list[Figure]:
-    from fpsolve.plotting.limits import plot_large_noise
-    from fpsolve.plotting.small_noise import plot_small_noise
-
-    if not bool(dataset["distance"].notnull().any()):
-        return []
-    draw = plot_large_noise if "quantity" in dataset.dims else plot_small_noise
-    return [embedded(
-        lambda: draw(dataset),
-        "Distances against the small parameter; thin lines: the slope that is derived.",
-        "Distances to the limit against the small parameter, logarithmic",
-    )]  # fmt: skip

@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from fpsolve.pages.blocks import Block, Facts, Listing, Notice, Paragraph, Part
+
+if TYPE_CHECKING:
+    from fpsolve.evolution.call import Call
 
 __all__ = ["provenance_part", "status_notice", "suggestion"]
 
 # Shown elsewhere on the page, or stand in for a model that cannot be read back.
 _ELSEWHERE = (
     "versions", "date", "wall_seconds", "cpu_seconds", "n_steps", "extrapolated",
-    "environment", "configuration", "suggested", "repeat", "model_description",
+    "environment", "configuration", "suggested", "call", "model_description",
     "equation", "initial_description",
 )  # fmt: skip
 _TONES = {"finished": "good", "interrupted": "warning"}
@@ -21,7 +24,7 @@ _NAMES = {"python": "Python"}
 # Shown folded, as JSON.
 _LISTINGS = {
     "environment": "Environment in full",
-    "repeat": "Function and arguments that repeat this study",
+    "call": "Function and arguments that repeat this result",
 }
 _MISSING = {"date": "date", "environment": "machine"}
 
@@ -37,7 +40,9 @@ def status_notice(status: str, message: str) -> Notice:
     )
 
 
-def provenance_part(provenance: Mapping[str, Any], steps: str = "steps") -> Part:
+def provenance_part(
+    provenance: Mapping[str, Any], steps: str = "steps", call: Call | None = None
+) -> Part:
     """Return versions, machine, date and times, whatever else is known, and the TOML.
 
     Parameters
@@ -45,7 +50,12 @@ def provenance_part(provenance: Mapping[str, Any], steps: str = "steps") -> Part
     provenance : mapping
     steps : str, optional
         What `n_steps` counts.
+    call : Call, optional
+        How the result was made.
     """
+    if call is not None:
+        told = {"function": call.function, "arguments": call.arguments}
+        provenance = {**provenance, "call": told}
     items = [(_NAMES.get(name, name), str(number)) for name, number in
              provenance.get("versions", {}).items()]  # fmt: skip
     facts = [*_when(provenance, steps), ("versions", _joined(items)),

@@ -7,9 +7,9 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from fpsolve._support.declared import declared
-from fpsolve.pages.blocks import Block, Facts, Figure, Paragraph, Part, Section, Table
+from fpsolve.pages.blocks import Block, Facts, Paragraph, Part, Section, Table
 from fpsolve.pages.equations import fokker_planck, potential_equation
-from fpsolve.pages.figures import embedded
+from fpsolve.pages.figures import drawings
 from fpsolve.pages.numbers import with_error
 from fpsolve.pages.studies import cases_blocks, entries, potential_of, versions_part
 
@@ -42,6 +42,21 @@ _MEANINGS = (
     ("Λ/A²", "asymptote of much noise, with the next order where it is known"),
 )
 
+_FIGURES = {
+    "integral": (
+        "Inverse decay rate ∫ H ds against noise, as in figure 5 of the paper.",
+        "Curve of the inverse decay rate against noise",
+    ),
+    "rates": (
+        "Decay rates of the leading modes, of the runs, and what is proven.",
+        "Curves of decay rates and bounds against noise",
+    ),
+    "averages": (
+        "Asymptotic variances against noise.",
+        "Curves of asymptotic variances against noise",
+    ),
+}
+
 
 def section(dataset: xr.Dataset, source: str) -> Section:
     """Return the section of a page about a study of rates."""
@@ -53,7 +68,7 @@ def section(dataset: xr.Dataset, source: str) -> Section:
     ]
     if "asymptotic_variance" in dataset:
         parts.append(Part("Averages along a path", [_variances(dataset)]))
-    parts += [Part("Figures", _figures(dataset)), versions_part(dataset)]
+    parts += [Part("Figures", drawings(dataset, _FIGURES)), versions_part(dataset)]
     return Section(
         "Rate of convergence against noise",
         source,
@@ -134,32 +149,3 @@ def _variances(dataset: xr.Dataset) -> Table:
 
 def _variance(value: float, error: float) -> str:
     return with_error(value, error) if math.isfinite(value) else "-"
-
-
-def _figures(dataset: xr.Dataset) -> list[Figure]:
-    from fpsolve.plotting import rates as plotting
-
-    figures = []
-    if _known(dataset, "inverse_decay_rate"):
-        figures.append(embedded(
-            lambda: plotting.plot_inverse_decay_rate(dataset),
-            "Inverse decay rate ∫ H ds against noise, as in figure 5 of the paper.",
-            "Curve of the inverse decay rate against noise",
-        ))  # fmt: skip
-    if _known(dataset, "gap") or _known(dataset, "branch_rate"):
-        figures.append(embedded(
-            lambda: plotting.plot_rates(dataset),
-            "Decay rates of the leading modes, of the runs, and what is proven.",
-            "Curves of decay rates and bounds against noise",
-        ))  # fmt: skip
-    if _known(dataset, "asymptotic_variance"):
-        figures.append(embedded(
-            lambda: plotting.plot_asymptotic_variance(dataset),
-            "Asymptotic variances against noise.",
-            "Curves of asymptotic variances against noise",
-        ))  # fmt: skip
-    return figures
-
-
-def _known(dataset: xr.Dataset, name: str) -> bool:
-    return name in dataset and bool(dataset[name].notnull().any())

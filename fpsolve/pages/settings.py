@@ -11,8 +11,17 @@ from fpsolve.pages.blocks import Block, Equation, Notice
 if TYPE_CHECKING:
     from fpsolve.grids.phase_space import PhaseSpaceGrid
     from fpsolve.model.curves.curve import Curve
+    from fpsolve.model.laydown import LayDownModel
 
-__all__ = ["curve_text", "grid_text", "start_text", "unread_model", "with_options"]
+__all__ = [
+    "curve_text",
+    "grid_text",
+    "model_facts",
+    "model_or_unread",
+    "start_text",
+    "unread_model",
+    "with_options",
+]
 
 
 def curve_text(curve: Curve) -> str:
@@ -45,6 +54,26 @@ def with_options(name: str, options: Mapping[str, Any]) -> str:
     """Write a name with its options as a call."""
     listed = ", ".join(f"{key} = {_plain(value)}" for key, value in options.items())
     return f"{name}({listed})" if listed else name
+
+
+def model_facts(model: LayDownModel | None) -> list[tuple[str, str]]:
+    """Return potential, noise and curve of a model, if it is known."""
+    if model is None:
+        return []
+    return [
+        ("potential", f"B = {model.potential.formula}"),
+        ("noise", f"A = {model.noise:g}"),
+        ("reference curve", curve_text(model.curve)),
+    ]
+
+
+def model_or_unread(
+    model: LayDownModel | None, provenance: Mapping[str, Any]
+) -> list[Block]:
+    """Return the equations of a model, or how one of a user's own described itself."""
+    from fpsolve.pages.equations import model_equations
+
+    return [*model_equations(model)] if model else unread_model(provenance)
 
 
 def unread_model(provenance: Mapping[str, Any]) -> list[Block]:

@@ -60,7 +60,7 @@ def versions_part(dataset: xr.Dataset, seconds: bool = True) -> Part:
 
 def origin_of(dataset: xr.Dataset) -> dict[str, Any]:
     """Return what the attributes of a study say about where it was computed."""
-    kept = ("versions", "environment", "repeat", "date")
+    kept = ("versions", "environment", "call", "date")
     about = declared(dataset.attrs)
     return {name: about[name] for name in kept if name in about}
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any, Protocol
+from typing import Any, ClassVar, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -52,6 +52,8 @@ class PointLaw:
         If a number is not finite, or ξ0 not two numbers.
     """
 
+    _recorded: ClassVar[str] = "law"
+
     xi: tuple[float, float] = (0.0, 0.0)
     alpha: float | None = None
 
@@ -94,6 +96,8 @@ class GaussianLaw:
         If the variance is not positive definite, the concentration negative, or
         positive without an angle.
     """
+
+    _recorded: ClassVar[str] = "law"
 
     mean: tuple[float, float] = (0.0, 0.0)
     variance: Any = 1.0
@@ -158,6 +162,8 @@ class EquilibriumLaw:
     [KMW09]_, section 3.1.1.
     """
 
+    _recorded: ClassVar[str] = "law"
+
     potential: Potential
     _sampler: GibbsSampler = field(init=False, repr=False, compare=False)
 
@@ -197,6 +203,8 @@ class DensityLaw:
         spline through it is negative; GridMismatchError if it has another shape.
     """
 
+    _recorded: ClassVar[str] = "density_law"
+
     grid: PhaseSpaceGrid
     p: ArrayLike = field(repr=False)
     _sampler: InterpolatedDensity = field(init=False, repr=False)
@@ -223,3 +231,6 @@ class DensityLaw:
     def to_dict(self) -> dict[str, Any]:
         """Return a description; the density itself is not in it."""
         return {"kind": "density", "grid": self.grid.to_dict()}
+
+    def _recorded_parts(self) -> dict[str, Any]:
+        return {"grid": self.grid, "p": self.p}

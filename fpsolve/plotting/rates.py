@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from fpsolve.spectral.eigen.spectrum import Spectrum
-    from fpsolve.spectral.eigen.stored import StoredSpectrum
 
 __all__ = [
     "plot_asymptotic_variance",
@@ -165,11 +164,6 @@ def plot_spectrum(found: Spectrum) -> Figure:
     matplotlib.figure.Figure
     """
     check_spectrum(found)
-    return spectrum_figure(found)
-
-
-def spectrum_figure(found: Spectrum | StoredSpectrum) -> Figure:
-    """Draw what `plot_spectrum` shows, also of a spectrum from a file."""
     with paper_style():
         figure = new_figure(COLUMN, 2.8)
         axes = figure.subplots()

@@ -1,4 +1,4 @@
-"""The kinds of results: what each is called, and who reads it from a dataset."""
+"""The kinds of results: what each is called, who reads it, and what makes it again."""
 
 from __future__ import annotations
 
@@ -7,54 +7,145 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from fpsolve._support.declared import declared
-from fpsolve._support.labels import FORMAT
+from fpsolve._support.labels import FORMAT, check_complete
 
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["KINDS", "Kind", "from_xarray", "kind_of"]
+__all__ = ["KINDS", "Kind", "from_xarray", "kind_of", "named"]
 
 
 @dataclass(frozen=True)
 class Kind:
-    """One kind of result that has a class of its own.
+    """One kind of result.
 
     Attributes
     ----------
     words : str
         In the plural, as messages call it.
+    function : str
+        "module:name" of the public function that makes one.
     reading : str
-        The module whose `from_xarray` makes the result from its dataset.
+        The module whose `from_xarray` makes the result from its dataset; empty for a
+        study, which is a dataset.
+    repeating : str
+        "module:name" of what repeats one otherwise than by its `call`.
+    counts : str
+        What a progress bar counts while it is computed: "steps" (with s), "cases", or
+        nothing.
+    variables, attributes : tuple of str
+        What the dataset of a study must hold.
     """
 
     words: str
-    reading: str
+    function: str
+    reading: str = ""
+    repeating: str = ""
+    counts: str = ""
+    variables: tuple[str, ...] = ()
+    attributes: tuple[str, ...] = ()
 
 
-# What a result says in `kind`, and its file in `fpsolve_kind`.
+_CASES = ("noise", "status", "message")
+_POTENTIAL = ("potential", "formula", "versions")
+# What a result says in `kind`, and its dataset in `fpsolve_kind`.
 KINDS = {
-    "solution": Kind("solutions", "fpsolve.density.reading"),
-    "paths": Kind("paths", "fpsolve.paths.reading"),
-    "hydrodynamic": Kind(
-        "solutions of the hydrodynamic limit", "fpsolve.reduced.hydrodynamic.reading"
+    "solution": Kind(
+        "solutions", "fpsolve.density.solve:solve", "fpsolve.density.reading",
+        "fpsolve.results.rerun.solutions:repeat_solution", counts="steps",
     ),
-    "energy": Kind("solutions of the energy process", "fpsolve.reduced.energy.reading"),
-}
+    "paths": Kind(
+        "paths", "fpsolve.paths.sampling:sample_paths", "fpsolve.paths.reading",
+        "fpsolve.results.rerun.paths:repeat_paths", counts="steps",
+    ),
+    "hydrodynamic": Kind(
+        "solutions of the hydrodynamic limit",
+        "fpsolve.reduced.hydrodynamic.limit:HydrodynamicLimit.solve",
+        "fpsolve.reduced.hydrodynamic.reading",
+        "fpsolve.results.rerun.limits:repeat_hydrodynamic", counts="steps",
+    ),
+    "energy": Kind(
+        "solutions of the energy process",
+        "fpsolve.reduced.energy.process:EnergyProcess.solve",
+        "fpsolve.reduced.energy.reading",
+        "fpsolve.results.rerun.limits:repeat_energy", counts="steps",
+    ),
+    "check": Kind(
+        "checks of density against paths",
+        "fpsolve.studies.agreement.cross_check:cross_check",
+        "fpsolve.studies.agreement.reading", counts="steps",
+    ),
+    "spectrum": Kind(
+        "spectra", "fpsolve.spectral.eigen.spectrum:spectrum",
+        "fpsolve.spectral.eigen.reading",
+    ),
+    "rate": Kind(
+        "rates against the noise",
+        "fpsolve.studies.rates.rate_versus_noise:rate_versus_noise", counts="cases",
+        variables=(*_CASES, "part"),
+        attributes=(*_POTENTIAL, "p0", "settings", "quick"),
+    ),
+    "large-noise": Kind(
+        "distances to the limit of large noise",
+        "fpsolve.studies.limits.large_noise:large_noise_limit", counts="cases",
+        variables=(*_CASES, "quantity", "meaning", "distance", "distance_error",
+                   "expected_order", "fitted_order"),
+        attributes=(*_POTENTIAL, "p0", "slow_length", "belt_speed_scale",
+                    "fixed_speed", "quick"),
+    ),
+    "small-noise": Kind(
+        "distances to the limit of small noise",
+        "fpsolve.studies.limits.small_noise:small_noise_limit", counts="cases",
+        variables=(*_CASES, "belt_speed_scale", "distance"),
+        attributes=(*_POTENTIAL, "options"),
+    ),
+    "small-noise-spectrum": Kind(
+        "spectra in the limit of small noise",
+        "fpsolve.studies.limits.energy_sectors:small_noise_spectrum",
+        variables=("noise", "family", "rate", "rate_error", "limit", "limit_error"),
+        attributes=(*_POTENTIAL, "tolerance"),
+    ),
+    "energy-tables": Kind(
+        "tables of the energy process", "fpsolve.studies.energy_tables:energy_tables",
+        variables=("g", "r_min", "eigenvalue", "eigenvalue_error"),
+        attributes=(*_POTENTIAL, "noise", "radius", "g_max"),
+    ),
+    "averages": Kind(
+        "averages along paths", "fpsolve.studies.ergodicity.averages:ergodic_averages",
+        counts="steps",
+        variables=("noise", "function", "s", "error", "error_standard_error",
+                   "asymptotic_variance", "asymptotic_variance_standard_error",
+                   "expectation", "deviation"),
+        attributes=(*_POTENTIAL, "n_paths"),
+    ),
+}  # fmt: skip
+
+
+def named(place: str) -> Any:
+    """Return what "module:name" names."""
+    module, _, name = place.partition(":")
+    return getattr(importlib.import_module(module), name)
 
 
 def kind_of(result: Any) -> str:
-    """Return the key of `KINDS` for a result.
+    """Return the key of `KINDS` for a result, or for the dataset of one.
 
     Raises
     ------
     TypeError
         If it is something else.
+    ValueError
+        If it is a dataset of something else.
     """
+    import xarray as xr
+
+    if isinstance(result, xr.Dataset):
+        return _kind_of_dataset(declared(result.attrs))
     kind = getattr(type(result), "kind", None)
     if not (isinstance(kind, str) and kind in KINDS):
         raise TypeError(
-            "`result` must be a Solution, Paths, a HydrodynamicSolution or an "
-            f"EnergySolution, got {type(result).__name__}."
+            "`result` must be a result of fpsolve (a solution, paths, a spectrum, a "
+            f"check or a study), got {type(result).__name__}."
         )
     return kind
 
@@ -64,7 +155,7 @@ def from_xarray(dataset: xr.Dataset) -> Any:
 
     Arrays come back bit for bit. A model made of a user's own functions cannot be
     read back: `model` is None then, and its description and equation are in
-    `provenance`.
+    `provenance`. A study is a dataset, and comes back as it is.
 
     Parameters
     ----------
@@ -73,34 +164,32 @@ def from_xarray(dataset: xr.Dataset) -> Any:
     Raises
     ------
     ValueError
-        If the dataset does not have the layout of `to_xarray`.
+        If the dataset does not have the layout of its kind.
 
     Warns
     -----
     UserWarning
         If the model could not be read back.
     """
-    kind = _kind_of_dataset(declared(dataset.attrs))
-    return importlib.import_module(KINDS[kind].reading).from_xarray(dataset)
+    kind = KINDS[kind_of(dataset)]
+    if kind.reading:
+        return named(f"{kind.reading}:from_xarray")(dataset)
+    check_complete(dataset, kind.variables, kind.attributes)
+    return dataset
 
 
 def _kind_of_dataset(about: dict[str, Any]) -> str:
-    written = about.get("fpsolve_format")
-    if written is None:
-        if "versions" in about:
+    for name in ("fpsolve_format", "fpsolve_kind"):
+        if name not in about:
             raise ValueError(
-                f"it holds a study, {about.get('title', '')!r}, and no single result; "
-                "`fpsolve report` and `compare` read it, and xarray opens it"
+                f"it is not a result of fpsolve (attribute `{name}` is missing)"
             )
-        raise ValueError(
-            "it is not a result of fpsolve (attribute `fpsolve_format` is missing)"
-        )
+    written, kind = about["fpsolve_format"], str(about["fpsolve_kind"])
     if written > FORMAT:
         raise ValueError(
             f"it has layout {written}, this version of fpsolve reads up to "
             f"{FORMAT}; update fpsolve"
         )
-    kind: str = about.get("fpsolve_kind", "solution")
     if kind not in KINDS:
         known = ", ".join(map(repr, KINDS))
         raise ValueError(

@@ -6,9 +6,9 @@ import os
 from typing import Any
 
 from fpsolve._support.netcdf import read_dataset, reported_damage
-from fpsolve.results.kinds import from_xarray
+from fpsolve.results.kinds import from_xarray, kind_of
 
-__all__ = ["load"]
+__all__ = ["load", "opened"]
 
 
 def load(path: str | os.PathLike[str]) -> Any:
@@ -18,6 +18,11 @@ def load(path: str | os.PathLike[str]) -> Any:
     ----------
     path : str or os.PathLike
         A netCDF file or a zarr store.
+
+    Returns
+    -------
+    object
+        Of the class that was saved; a study, which is one, as its xarray.Dataset.
 
     Raises
     ------
@@ -38,3 +43,21 @@ def load(path: str | os.PathLike[str]) -> Any:
     dataset = read_dataset(path)
     with reported_damage(path, Exception):
         return from_xarray(dataset)
+
+
+def opened(result: Any) -> Any:
+    """Return the result in a file or in a dataset; a result as it is.
+
+    Raises
+    ------
+    TypeError
+        If it is something else.
+    """
+    import xarray as xr
+
+    if isinstance(result, (str, os.PathLike)):
+        return load(result)
+    if isinstance(result, xr.Dataset):
+        return from_xarray(result)
+    kind_of(result)
+    return result

@@ -7,16 +7,17 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fpsolve._support.checks import check_integer
-from fpsolve._support.labels import labels
+from fpsolve._support.labels import labels, marked
+from fpsolve.evolution.call import recorded
+from fpsolve.model.potentials.potential import Potential
 from fpsolve.reduced.energy.dataset import process_attributes
-from fpsolve.studies.recipe import recipe
 
 if TYPE_CHECKING:
     import xarray as xr
 
     from fpsolve.reduced.energy.process import EnergyProcess
 
-__all__ = ["tables_dataset"]
+__all__ = ["energy_tables", "tables_dataset"]
 
 _TABLES = {
     "r_min": "smallest distance r on the orbit",
@@ -47,7 +48,26 @@ def tables_dataset(
     -------
     xarray.Dataset
     """
+    return energy_tables(process.potential, process.noise, n_energies, n_eigenvalues)
+
+
+@recorded()
+def energy_tables(
+    potential: Potential, noise: float, n_energies: int, n_eigenvalues: int
+) -> xr.Dataset:
+    """The same of ``EnergyProcess(potential, noise)``.
+
+    Parameters
+    ----------
+    potential : Potential
+    noise : float
+    n_energies, n_eigenvalues : int
+    """
     import xarray as xr
+
+    from fpsolve.reduced.energy.process import EnergyProcess
+
+    process = EnergyProcess(potential, noise)
 
     n_energies = check_integer("n_energies", n_energies, at_least=1)
     g = process.g_max * np.arange(1, n_energies + 1) / n_energies
@@ -72,9 +92,5 @@ def tables_dataset(
     attributes = {
         "title": "energy process of fibre lay-down",
         **process_attributes(process),
-        **recipe("energy_tables", {
-            "potential": process.potential, "noise": process.noise,
-            "n_energies": n_energies, "n_eigenvalues": n_eigenvalues,
-        }),
-    }  # fmt: skip
-    return xr.Dataset(variables, coordinates, attributes)
+    }
+    return marked(xr.Dataset(variables, coordinates, attributes), "energy-tables")

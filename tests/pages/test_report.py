@@ -37,8 +37,7 @@ def page_of(tmp_path, monkeypatch):
 
     Figures are not drawn, which would take the most time: empty ones stand for them.
     """
-    for module in ("solution", "paths", "rates", "cross_check", "spectrum", "energy",
-                   "limits"):  # fmt: skip
+    for module in ("solution", "paths", "figures"):
         # By its module: `fpsolve.report` is the function.
         monkeypatch.setattr(
             importlib.import_module(f"fpsolve.pages.{module}"),
@@ -353,7 +352,7 @@ def without_attribute(dataset):
         (lambda dataset: dataset.drop_vars("status"), "`status` is missing in it"),
         (lambda dataset: dataset.drop_vars("gap_error"), "'gap_error'"),
         (lambda dataset: dataset.assign_attrs(p0="{"), "Expecting property name"),
-        (lambda dataset: dataset.assign_attrs(title="x"), "not a result of fpsolve"),
+        (lambda dataset: dataset.assign_attrs(fpsolve_kind="x"), "it holds 'x'"),
     ],
 )  # fmt: skip
 def test_a_tampered_study_is_refused_by_name(tmp_path, change, reason):
@@ -379,7 +378,9 @@ def test_wrong_arguments_are_named(tmp_path):
     page = tmp_path / "page.html"
     with pytest.raises(ValueError, match="`results` must name at least one result"):
         fp.report([], page)
-    with pytest.raises(TypeError, match=r"`results` must be files, .* got int"):
+    with pytest.raises(
+        TypeError, match=r"`result` must be a result .* got int"
+    ):
         fp.report([3], page)
     with pytest.raises(FileNotFoundError, match="`path` must exist to be read"):
         fp.report(tmp_path / "missing.nc", page)

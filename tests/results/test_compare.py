@@ -270,15 +270,15 @@ def test_results_of_different_kinds_are_refused(solution, model):
 
 
 def test_what_is_no_result_is_refused(solution):
-    message = "`b` must be a result of fpsolve, got a dataset of something else"
+    message = "`b` must be a result of fpsolve, got another dataset: it is not a result"
     with pytest.raises(ValueError, match=message):
         fp.compare(solution, xr.Dataset({"x": ("t", [1.0])}))
-    with pytest.raises(TypeError, match="`result` must be a Solution, Paths, "):
+    with pytest.raises(TypeError, match="`result` must be a result of fpsolve"):
         fp.compare(solution, [1.0])
 
 
 def test_a_layout_of_the_future_is_refused(solution):
-    message = r"`a` must have a layout up to \d+ to be read, got 99; update fpsolve"
+    message = r"`a` must be a result .* it has layout 99, .* up to \d+; update fpsolve"
     with pytest.raises(ValueError, match=message):
         fp.compare(solution.to_xarray().assign_attrs(fpsolve_format=99), solution)
 
@@ -303,7 +303,7 @@ def test_series_are_drawn_with_the_errors_of_both(solution):
 
 def test_a_study_is_drawn_against_the_noise():
     noise = np.array([0.5, 1.0, 2.0])
-    about = {"title": "Rate of convergence against noise"}
+    about = {"fpsolve_kind": "rate", "fpsolve_format": 1}
     gap, error = np.array([0.1, 0.4, 0.2]), np.full(3, 1e-3)
     first, second = (
         xr.Dataset(
@@ -362,7 +362,7 @@ def test_mistakes_of_the_command_are_one_line(two_files, fpsolve, tmp_path, solu
     assert_mistake(result, "`path` must exist to be read, got `missing.nc`.")
     xr.Dataset({"x": ("t", [1.0])}).to_netcdf(tmp_path / "x.nc", engine="h5netcdf")
     result = fpsolve("compare", "a.nc", "x.nc")
-    assert_mistake(result, "`b` must be a result of fpsolve")
+    assert_mistake(result, "cannot read `x.nc`: it is not a result of fpsolve")
     result = fpsolve("compare", "a.nc", "b.nc", "--tolerance", "-1")
     assert_mistake(result, "`--tolerance` must be positive")
 

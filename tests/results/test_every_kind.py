@@ -8,7 +8,6 @@ import result_files
 
 import fpsolve as fp
 from fpsolve import plotting, studies
-from fpsolve._support.netcdf import write_dataset
 from fpsolve.pages.page import report_text
 from fpsolve.plotting.files import possible_figures
 
@@ -103,25 +102,15 @@ def test_without_a_saved_density_there_is_nothing_to_draw():
         plotting.plot_hydrodynamic(3)
 
 
-def test_a_study_is_not_drawn_by_itself(fpsolve, tmp_path):
+def test_a_study_is_loaded_and_drawn(fpsolve):
     path = result_files.result_file("energy.nc")
+    assert fp.compare(fp.load(path), path).equal
     found = fpsolve("plot", str(path), "--out", "figures")
-    assert found.exit_code == 2
-    assert "it holds a study, 'energy process of fibre lay-down'" in found.stderr
-    with pytest.raises(TypeError, match="figures of a study are drawn by the"):
-        plotting.save_figures(result_files.energy(), tmp_path)
-
-
-def test_studies_without_a_report_say_so_and_are_compared_and_repeated(tmp_path):
-    averages = studies.ergodic_averages(
-        fp.QuadraticPotential(), [1.0], s_end=2.0, n_paths=40, seed=1
-    )
-    path = write_dataset(averages, tmp_path / "averages.nc")
-    with pytest.raises(
-        fp.errors.FileFormatError, match="a report can be written about"
-    ):
-        report_text(path)
-    assert fp.compare(path, fp.rerun(path)).equal
+    assert found.exit_code == 0, found.output
+    assert found.output.split() == [
+        f"figures/energy-{name}.png"
+        for name in ("orbits", "coefficients", "eigenfunctions")
+    ]
 
 
 def test_averages_are_not_saved_more_often_than_memory_allows():

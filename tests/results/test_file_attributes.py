@@ -15,7 +15,7 @@ from fpsolve._support.declared import declared
 from fpsolve._support.json_text import bounded_json
 from fpsolve._support.netcdf import read_dataset, write_dataset
 from fpsolve.errors import FileFormatError, NotRepeatableError
-from fpsolve.studies.recipe import read_recipe
+from fpsolve.evolution.call import Call
 
 DEEP = "[" * 100_000 + "]" * 100_000
 WRONG = [
@@ -34,7 +34,7 @@ WRONG = [
     ({"provenance": '{"versions": []}'}, r"`provenance.versions` must be a table"),
     ({"provenance": '{"run": {"s_span": 5}}'}, r"`provenance.run.s_span` must be a l"),
     ({"saved_steps": "{}"}, "`saved_steps` must be a list, got {}"),
-    ({"repeat": '{"function": 3}'}, r"`repeat.function` must be text, got 3"),
+    ({"call": '{"function": 3}'}, r"`call.function` must be text, got 3"),
 ]
 
 
@@ -305,9 +305,9 @@ def test_a_study_of_other_size_than_its_file_is_not_repeated(
     path = shutil.copy(result_files.result_file(name), tmp_path / name)
 
     def change(dataset):
-        recipe = json.loads(dataset.attrs["repeat"])
+        recipe = json.loads(dataset.attrs["call"])
         recipe["arguments"][argument] = value
-        dataset.attrs["repeat"] = json.dumps(recipe)
+        dataset.attrs["call"] = json.dumps(recipe)
 
     path = write_dataset(read_dataset(path), tmp_path / "again.nc")
     assert f"`{argument}` would give {value}" in rerun_of(path, change)
@@ -315,15 +315,15 @@ def test_a_study_of_other_size_than_its_file_is_not_repeated(
 
 def test_an_argument_that_its_function_has_not_is_named():
     dataset = result_files.energy()
-    recipe = json.loads(dataset.attrs["repeat"])
+    recipe = json.loads(dataset.attrs["call"])
     recipe["arguments"]["colour"] = 1
     with pytest.raises(NotRepeatableError, match="to be repeated, got 'colour'"):
-        fp.rerun(dataset.assign_attrs(repeat=json.dumps(recipe)))
+        fp.rerun(dataset.assign_attrs(call=json.dumps(recipe)))
 
 
-def test_a_recipe_that_is_none_is_told():
-    with pytest.raises(ValueError, match="`repeat` must name a function and its argum"):
-        read_recipe("{}", {})
+def test_a_call_that_is_none_is_told():
+    with pytest.raises(ValueError, match="`call` must name a function and its argum"):
+        Call.from_xarray(xr.Dataset(attrs={"call": "{}"}))
 
 
 def test_paths_of_other_length_than_their_file_are_not_repeated(tmp_path):
@@ -332,9 +332,7 @@ def test_paths_of_other_length_than_their_file_are_not_repeated(tmp_path):
     assert "`n_steps` would give 60000000 in all, and it holds 2400" in text
 
 
-def test_a_dataset_of_a_study_is_told_from_a_result(tmp_path):
-    with pytest.raises(
-        FileFormatError, match="it holds a study, 'energy process of fibre lay-down'"
-    ):
-        fp.load(result_files.result_file("energy.nc"))
-    assert isinstance(result_files.energy(), xr.Dataset)
+def test_a_study_without_what_its_kind_needs_is_no_study(tmp_path):
+    path = write_dataset(result_files.energy().drop_vars("r_min"), tmp_path / "a.nc")
+    with pytest.raises(FileFormatError, match="`r_min` is missing in it"):
+        fp.load(path)

@@ -5,16 +5,19 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import xarray as xr
 from command_line import assert_mistake, files
 from solutions import relaxing_solution
 
 import fpsolve as fp
 from fpsolve import studies
 from fpsolve._support.netcdf import read_dataset, write_dataset
+from fpsolve.density.description import described_scheme
 from fpsolve.errors import NotRepeatableError, RunInterrupted
+from fpsolve.evolution.call import CALL, Call
 from fpsolve.paths import DensityLaw, GaussianLaw
+from fpsolve.results.rerun.arguments import arguments_of
 from fpsolve.studies.energy_tables import tables_dataset
-from fpsolve.studies.recipe import RECIPE, UserCodeError, read_recipe, recipe
 
 GRID = fp.PhaseSpaceGrid(5.0, (12, 14, 8))
 QUADRATIC = fp.QuadraticPotential()
@@ -255,13 +258,13 @@ def test_results_that_do_not_say_how_they_were_made_are_refused():
     with pytest.raises(NotRepeatableError, match=message):
         fp.rerun(relaxing_solution())
     old = tables_dataset(ENERGY, 3, 2)
-    del old.attrs[RECIPE]
+    del old.attrs[CALL]
     with pytest.raises(NotRepeatableError, match="does not say how it was computed"):
         fp.rerun(old)
     for limit in (hydrodynamic(), energy(0.2)):
         with pytest.raises(NotRepeatableError, match="does not say how the run began"):
             fp.rerun(replace(limit, provenance={}))
-    with pytest.raises(NotRepeatableError, match="`result` must be a file, a solution"):
+    with pytest.raises(NotRepeatableError, match="`result` must be a result of"):
         fp.rerun(3.0)
 
 
@@ -272,7 +275,7 @@ def test_paths_that_went_on_are_repeated_in_one_go_with_changes():
 
 def test_the_functions_of_a_study_are_a_closed_list():
     dataset = tables_dataset(ENERGY, 3, 2)
-    strange = dataset.assign_attrs(recipe("os.remove", {"path": "x"}))
+    strange = Call.of("os.remove", {"path": "x"}).on(dataset)
     with pytest.raises(NotRepeatableError, match=r"got 'os\.remove'; update fpsolve"):
         fp.rerun(strange)
 
@@ -284,23 +287,51 @@ def test_the_functions_of_a_study_are_a_closed_list():
         fp.PlaneGrid(3.0, (4, 5)), GaussianLaw((0.5, 0.0), 0.8, 1.0, 1.0),
     ],
 )  # fmt: skip
-def test_arguments_survive_a_recipe(value):
-    text = recipe("f", {"x": value})[RECIPE]
-    assert read_recipe(text, {}) == ("f", {"x": value})
+def test_arguments_survive_a_call(value):
+    call = written(Call.of("f", {"x": value}))
+    assert call.function == "f"
+    # What has its default is not written.
+    assert arguments_of(call, {}) == ({} if value is None else {"x": value})
 
 
-def test_seeds_survive_a_recipe():
+def written(call):
+    """The call as a dataset holds it."""
+    return Call.from_xarray(call.on(xr.Dataset()))
+
+
+@pytest.mark.parametrize("shape", [(300,), (4, 5), (2, 2, 2)])
+def test_long_arrays_are_variables_beside_the_call(shape):
+    values = np.random.default_rng(1).standard_normal(shape)
+    pair = (GRID, values)
+    found = arguments_of(written(Call.of("f", {"p0": pair, "x": values})), {})
+    assert isinstance(found["p0"], tuple)
+    assert found["p0"][0] == GRID
+    np.testing.assert_array_equal(found["p0"][1], values)
+    np.testing.assert_array_equal(found["x"], values)
+
+
+def test_a_density_and_a_scheme_survive_a_call():
+    law = DensityLaw(GRID, START)
+    scheme = fp.drift_kick(MODEL, GRID, positive=True)
+    call = Call.of("f", {"law": law, "scheme": described_scheme(scheme)})
+    found = arguments_of(written(call), {})
+    np.testing.assert_array_equal(found["law"].p, START)
+    assert found["scheme"].options == scheme.options
+    assert found["scheme"].model == MODEL
+
+
+def test_seeds_survive_a_call():
     seed = np.random.SeedSequence(2**100, spawn_key=(1, 2))
-    _, found = read_recipe(recipe("f", {"seed": seed})[RECIPE], {})
+    found = arguments_of(written(Call.of("f", {"seed": seed})), {})
     assert found["seed"].entropy == seed.entropy
     assert found["seed"].spawn_key == seed.spawn_key
 
 
-def test_a_recipe_names_the_argument_that_no_file_holds():
-    text = recipe("f", {"x": {"mine": own_value}})[RECIPE]
-    with pytest.raises(UserCodeError, match="`x` was your own code, own_value"):
-        read_recipe(text, {})
-    assert read_recipe(text, {"x": 1}) == ("f", {"x": 1})
+def test_a_call_names_the_argument_that_no_file_holds():
+    call = written(Call.of("f", {"x": {"mine": own_value}}))
+    with pytest.raises(NotRepeatableError, match=r"`x` was your own code \(own_value"):
+        arguments_of(call, {})
+    assert arguments_of(call, {"x": 1}) == {"x": 1}
 
 
 RUN = """\

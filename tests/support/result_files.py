@@ -10,11 +10,11 @@ import numpy as np
 from solutions import relaxing_solution
 
 import fpsolve as fp
+from fpsolve._support.netcdf import write_dataset
 from fpsolve.grids.initial import gaussian
 from fpsolve.pages.page import html_page
 from fpsolve.pages.reading import section_of
 from fpsolve.paths import GaussianLaw
-from fpsolve.spectral.eigen.dataset import spectrum_dataset
 from fpsolve.studies import compare
 from fpsolve.studies.energy_tables import tables_dataset
 from fpsolve.studies.limits.large_noise_dataset import large_noise_dataset
@@ -99,7 +99,7 @@ def rates():
 
 @cache
 def spectrum():
-    return spectrum_dataset(fp.spectrum(MODEL, 3, tolerance=1e-4))
+    return fp.spectrum(MODEL, 3, tolerance=1e-4)
 
 
 @cache
@@ -156,12 +156,7 @@ KINDS = {
 def result_file(name):
     """The file of that name, written as its command does; the same for all tests."""
     result, path = KINDS[name][0](), folder() / name
-    if isinstance(result, (fp.Solution, fp.Paths)):
-        return result.save(path)
-    if not hasattr(result, "to_netcdf"):
-        result = result.to_xarray()
-    result.to_netcdf(path, engine="h5netcdf")
-    return path
+    return result.save(path) if hasattr(result, "save") else write_dataset(result, path)
 
 
 @cache

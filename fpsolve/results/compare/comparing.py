@@ -17,7 +17,8 @@ from fpsolve.results.compare.parameters import (
     differing_environment,
     differing_parameters,
 )
-from fpsolve.results.compare.reading import KINDS, dataset_of, kind_of_dataset, name_of
+from fpsolve.results.compare.reading import dataset_of, kind_of_dataset, name_of
+from fpsolve.results.kinds import KINDS
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -43,9 +44,8 @@ def compare(a: Any, b: Any) -> Comparison:
 
     Parameters
     ----------
-    a, b : path, Solution, Paths, HydrodynamicSolution, EnergySolution, CrossCheck, \
-Spectrum or xarray.Dataset
-        Files, results, or datasets of studies.
+    a, b : path or result
+        Files, results of any kind, or their datasets; a study is one.
 
     Returns
     -------
@@ -63,8 +63,8 @@ Spectrum or xarray.Dataset
     other = kind_of_dataset(second, "b")
     if kind != other:
         raise ValueError(
-            f"`a` and `b` must be of the same kind, got {KINDS[kind]} and "
-            f"{KINDS[other]}; `studies.compare` puts a density beside paths."
+            f"`a` and `b` must be of the same kind, got {KINDS[kind].words} "
+            f"and {KINDS[other].words}; `studies.compare` puts a density beside paths."
         )
     one, two, left_out = aligned(
         on_arclength(with_start(first)), on_arclength(with_start(second))
@@ -78,7 +78,7 @@ Spectrum or xarray.Dataset
         if "density" not in one and "cell_mass" not in one:
             left_out += ("density_l1 is that on the coarser grid",)
     return Comparison(
-        kind=KINDS[kind],
+        kind=KINDS[kind].words,
         names=(name_of(a, "A"), name_of(b, "B")),
         differences=tuple(found),
         left_out=left_out,

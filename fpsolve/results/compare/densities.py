@@ -23,12 +23,14 @@ _SAME_BOX = 1e-9
 
 
 def density_distance(a: xr.Dataset, b: xr.Dataset) -> xr.DataArray | None:
-    """∫ |p_b − p_a| at every s, of densities on the same cells; None without any."""
+    """∫ |p_b − p_a| at every s, if any, of densities on the same cells, or None."""
     for name, volume in (("cell_mass", 1.0), ("density", _volume(a))):
         if name in a and name in b:
             apart = distance(a[name].to_numpy(), b[name].to_numpy())
-            total = apart.sum(axis=tuple(range(1, apart.ndim))) * volume
-            first = dict.fromkeys(a[name].dims[1:], 0)
+            cells = [one for one in a[name].dims if one != "s"]
+            places = tuple(map(a[name].dims.index, cells))
+            total = apart.sum(axis=places) * volume
+            first = dict.fromkeys(cells, 0)
             return a[name].isel(first, drop=True).copy(data=total)
     return None
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from fpsolve.paths.result import Paths
 
-__all__ = ["check_paths", "check_run", "check_study"]
+__all__ = ["check_call", "check_paths", "check_run"]
 
 # Seconds that a step takes for a cell, or a path, at the very least.
 _FASTEST = 1e-10
@@ -70,27 +70,28 @@ def check_paths(paths: Paths, given: Collection[str]) -> None:
         raise _refused("`n_steps`", f"{n_paths * n_steps} in all", f"{told}")
 
 
-def check_study(
-    function: str, arguments: Mapping[str, Any], dataset: xr.Dataset, given: Any
+def check_call(
+    function: str, arguments: Mapping[str, Any], result: Any, given: Any
 ) -> None:
-    """Raise NotRepeatableError unless a study has the cases that its dataset shows.
+    """Raise NotRepeatableError unless a call has the size that its result shows.
 
     Parameters
     ----------
     function : str
-        Name in the recipe.
     arguments : mapping
-    dataset : xarray.Dataset
+    result : object
+        A study, or what has `to_xarray`.
     given : collection of str
         Names of arguments that the caller chose instead.
     """
     read = _HELD.get(function)
     if read is None:
         return
+    dataset = result if hasattr(result, "data_vars") else result.to_xarray()
     for name, held in read(dataset, declared(dataset.attrs)):
         asked = arguments.get(name)
         asked = asked.shape if name == "grid" and asked is not None else asked
-        # What is not in the recipe has its default.
+        # What is not in the call has its default.
         if name in given or asked is None or held is None:
             continue
         if not _same(asked, held):

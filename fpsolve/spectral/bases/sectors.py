@@ -12,8 +12,8 @@ matrix, and the matrix of the adjoint L* is its transpose.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
-from typing import Any, NamedTuple, Protocol
+from dataclasses import asdict, dataclass
+from typing import Any, ClassVar, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -44,9 +44,15 @@ class Sector:
         σ1 ≠ σ2 on a fixed belt; None elsewhere.
     """
 
+    _recorded: ClassVar[str] = "sector"
+
     M: int | None = None
     parity: int | None = None
     parity_along: int | None = None
+
+    def to_dict(self) -> dict[str, int | None]:
+        """M and the parities."""
+        return asdict(self)
 
     @property
     def multiplicity(self) -> int:

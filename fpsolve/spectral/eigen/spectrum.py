@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass, field
-from typing import Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 import psutil
@@ -13,14 +14,20 @@ from numpy.typing import NDArray
 
 from fpsolve._support.blas import one_blas_thread
 from fpsolve._support.checks import check_integer, check_positive, check_real, shown
+from fpsolve._support.netcdf import write_dataset
+from fpsolve.evolution.call import Call, recorded
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.model.laydown import LayDownModel
 from fpsolve.model.potentials.quadratic import QuadraticPotential
 from fpsolve.spectral.bases.choice import check_resolved, discretisation_for
 from fpsolve.spectral.bases.sectors import Discretisation, Sector, Truncation
+from fpsolve.spectral.eigen.dataset import spectrum_dataset
 from fpsolve.spectral.eigen.refinement import Refinement, left_vector, with_residual
 from fpsolve.spectral.eigen.survey import Mode, Scale
 from fpsolve.spectral.work import DEFAULT_WORK, Work
+
+if TYPE_CHECKING:
+    import xarray
 
 __all__ = ["Spectrum", "spectrum"]
 
@@ -60,7 +67,13 @@ class Spectrum:
         to the right of it only.
     truncation : Truncation
         The largest basis used.
+    call : Call or None
+        How `spectrum` was called.
+    provenance : dict
+        Versions, environment, date and times.
     """
+
+    kind: ClassVar[str] = "spectrum"
 
     model: LayDownModel
     eigenvalues: Complex
@@ -70,7 +83,9 @@ class Spectrum:
     essential: float | None
     truncation: Truncation
     _modes: list[Mode] = field(repr=False)
-    _discretisation: Discretisation = field(repr=False)
+    _discretisation: Discretisation | None = field(repr=False)
+    call: Call | None = field(default=None, repr=False)
+    provenance: dict[str, Any] = field(default_factory=dict, repr=False)
 
     @property
     def gap(self) -> float:
@@ -101,10 +116,9 @@ class Spectrum:
         Its largest coefficient is real and positive. For ±M it is the one of +M; the
         other is its reflection f(ξ1, -ξ2, -α).
         """
-        mode = self._modes[i]
-        return self._discretisation.values(
-            normalised(mode.vector), mode.sector, mode.truncation, grid
-        )
+        basis, mode = self._basis, self._modes[i]
+        vector = normalised(mode.vector)
+        return basis.values(vector, mode.sector, mode.truncation, grid)
 
     def density_mode(self, i: int, grid: PhaseSpaceGrid) -> Complex:
         """p_S h with L* h = λ h, h of norm 1: the mode of the density itself.
@@ -113,18 +127,35 @@ class Spectrum:
         eigenfunction with α turned by π; on a moving belt it is a function of its own,
         less well resolved than the eigenfunction.
         """
-        mode = self._modes[i]
-        left = normalised(left_vector(self._discretisation, mode))
-        h = self._discretisation.values(left, mode.sector, mode.truncation, grid)
+        basis, mode = self._basis, self._modes[i]
+        left = normalised(left_vector(basis, mode))
+        h = basis.values(left, mode.sector, mode.truncation, grid)
         reference: Complex = h * self.model.equilibrium(*grid.plane())[:, :, None]
         return reference
+
+    def to_xarray(self) -> xarray.Dataset:
+        """Labelled Dataset: eigenvalues with errors over `index`, slowest first."""
+        return spectrum_dataset(self)
+
+    def save(self, path: str | Path, engine: str | None = None) -> Path:
+        """Write the spectrum to netCDF, or to zarr for a path that ends in .zarr."""
+        return write_dataset(self.to_xarray(), path, engine)
+
+    @property
+    def _basis(self) -> Discretisation:
+        if self._discretisation is None:
+            raise ValueError(
+                "`model` must be known for an eigenfunction, got None; its potential "
+                "was your own code: call `spectrum` again."
+            )
+        return self._discretisation
 
     @property
     def _essential(self) -> list[float]:
         return [] if self.essential is None else [self.essential]
 
     def __str__(self) -> str:
-        lines = [self.model.equation]
+        lines = [] if self.model is None else [self.model.equation]
         lines.append(f"{'eigenvalue':>44}  {'error':>8}  {'residual':>8}  sector")
         rows = zip(
             self.eigenvalues, self.errors, self.residuals, self.sectors, strict=True
@@ -139,6 +170,7 @@ class Spectrum:
         return "\n".join(lines)
 
 
+@recorded()
 @one_blas_thread()
 def spectrum(
     model: LayDownModel,

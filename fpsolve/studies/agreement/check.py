@@ -5,11 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from fpsolve._support.netcdf import write_dataset
+from fpsolve.evolution.call import Call
 from fpsolve.evolution.schedule import index_of
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.model.laydown import LayDownModel
@@ -48,11 +51,13 @@ class CrossCheck:
     probabilities, counts : mapping of ndarray
         Of the cells of the grid along "xi1", "xi2" and "alpha", shapes (n_s, n);
         probabilities of the density, counts of paths inside the box.
-    recipe : mapping of str
-        How `cross_check` is called again; empty for two results that were compared.
-    start : ndarray, shape grid.shape, or None
-        The density p0, unless it was given as a formula.
+    call : Call or None
+        That of `cross_check`; None for two results that were compared.
+    provenance : dict
+        Versions, environment, date and times.
     """
+
+    kind: ClassVar[str] = "check"
 
     model: LayDownModel | None
     grid: PhaseSpaceGrid
@@ -64,8 +69,8 @@ class CrossCheck:
     sampler: dict[str, Any]
     probabilities: Mapping[str, Array]
     counts: Mapping[str, NDArray[np.int64]]
-    recipe: Mapping[str, str] = field(default_factory=dict)
-    start: Array | None = None
+    call: Call | None = None
+    provenance: dict[str, Any] = field(default_factory=dict)
 
     @property
     def agrees(self) -> bool:
@@ -147,6 +152,10 @@ class CrossCheck:
     def to_xarray(self) -> xarray.Dataset:
         """Labelled Dataset: every number of the tests (s, test), marginals (s, ...)."""
         return to_xarray(self)
+
+    def save(self, path: str | Path, engine: str | None = None) -> Path:
+        """Write the check to netCDF, or to zarr for a path that ends in .zarr."""
+        return write_dataset(self.to_xarray(), path, engine)
 
 
 def _known(value: Any) -> Any:

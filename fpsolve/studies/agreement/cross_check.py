@@ -14,13 +14,14 @@ from fpsolve._support.arrays import check_numbers
 from fpsolve._support.blas import one_blas_thread
 from fpsolve._support.checks import check_integer, check_kind, check_real
 from fpsolve._support.progress import ProgressCallback
-from fpsolve.density.description import describe_scheme
+from fpsolve.density.description import described_scheme
 from fpsolve.density.schemes import drift_kick
 from fpsolve.density.schemes.scheme import Scheme
 from fpsolve.density.solution import Solution
 from fpsolve.density.solve import solve
 from fpsolve.density.steady_state import SteadyState
 from fpsolve.errors import ToleranceError
+from fpsolve.evolution.call import recorded
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.model.laydown import LayDownModel
 from fpsolve.studies.agreement.at_arclength import TESTS_PER_STATION, Station
@@ -33,7 +34,6 @@ from fpsolve.studies.agreement.coarser import (
 from fpsolve.studies.agreement.outcome import MARGINALS
 from fpsolve.studies.agreement.reference import describe, model_of, places, reference_at
 from fpsolve.studies.agreement.steps import paths_step, solver_step
-from fpsolve.studies.recipe import recipe
 from fpsolve.studies.starts import density_and_law
 
 if TYPE_CHECKING:
@@ -53,6 +53,7 @@ MOST_NONCENTRALITY = 1.0
 RECORD_EVERY = 8
 
 
+@recorded(scheme=described_scheme)
 def cross_check(
     model: LayDownModel,
     p0: Any,
@@ -170,15 +171,7 @@ def cross_check(
     )  # fmt: skip
     if isinstance(coarser, str):
         check = replace(check, solver={**check.solver, "coarser": coarser})
-    is_density = isinstance(law, DensityLaw)
-    again = recipe("cross_check", {
-        "model": model, "s": s, "n_paths": n_paths, "seed": seed, "ds": ds,
-        "paths_ds": paths_ds, "method": method, "false_alarm": false_alarm,
-        "cells": cells, "extrapolate": extrapolate, "solve_options": solve_options,
-        "scheme": describe_scheme(scheme), "grid": grid,
-        **({} if is_density else {"p0": law}),
-    })  # fmt: skip
-    return replace(check, recipe=again, start=p0 if is_density else None)
+    return check
 
 
 @one_blas_thread()

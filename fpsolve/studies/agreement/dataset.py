@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fpsolve._support.labels import made_with, to_json
+from fpsolve._support.labels import marked, origin
+from fpsolve.model.stored import describe_model
 from fpsolve.studies.agreement.outcome import MARGINALS
 
 if TYPE_CHECKING:
@@ -69,15 +70,14 @@ def to_xarray(check: Any) -> xr.Dataset:
             ("s", which), check.counts[which],
             _labels(f"paths inside the box in a cell of {which}"),
         )  # fmt: skip
-    if check.start is not None:
-        meaning = "probability density p0 of the start"
-        variables["initial_density"] = (MARGINALS, check.start, _labels(meaning))
     coordinates = {
         "s": ("s", check.s, _labels("arclength s")),
         "test": ("test", np.array(names, dtype=object)),
         **{which: (which, getattr(check.grid, which)) for which in MARGINALS},
     }
-    return xr.Dataset(variables, coordinates, _attributes(check))
+    dataset = xr.Dataset(variables, coordinates, _attributes(check))
+    dataset = dataset if check.call is None else check.call.on(dataset)
+    return marked(dataset, "check")
 
 
 def _table(check: Any, number: str, kind: type) -> Any:
@@ -98,11 +98,11 @@ def _attributes(check: Any) -> dict[str, Any]:
         "agrees": int(check.agrees),
         "false_alarm": check.false_alarm,
         "n_paths": check.n_paths,
-        "equation": "" if model is None else model.equation,
-        "model": "" if model is None else to_json(model.to_dict()),
+        **describe_model(
+            model, None if model is None else model.equation, check.provenance
+        ),
         "grid": json.dumps(check.grid.to_dict()),
         "solver": json.dumps(check.solver),
         "sampler": json.dumps(check.sampler),
-        **made_with(),
-        **check.recipe,
+        **origin(check.provenance),
     }

@@ -6,14 +6,14 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from fpsolve._support.declared import declared
-from fpsolve._support.labels import check_complete
+from fpsolve._support.labels import check_complete, read_provenance
+from fpsolve.evolution.call import Call
 from fpsolve.evolution.layout import check_counts
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.model.stored import read_model
 from fpsolve.studies.agreement.check import CrossCheck
 from fpsolve.studies.agreement.dataset import NO_DEGREES, NUMBERS
 from fpsolve.studies.agreement.outcome import MARGINALS, AgreementTest
-from fpsolve.studies.recipe import RECIPE
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -28,6 +28,7 @@ _NEEDED_ATTRIBUTES = (
     "grid",
     "solver",
     "sampler",
+    "provenance",
 )
 
 
@@ -48,18 +49,17 @@ def from_xarray(dataset: xr.Dataset) -> CrossCheck:
     UserWarning
         If the model was made of a user's own functions; `model` is None then.
     """
-    # Older files know nothing of the error of the grid.
-    always = [number for number in NUMBERS if number != "grid_error"]
-    numbers = (*always, "degrees", "s", "test")
+    numbers = (*NUMBERS, "degrees", "s", "test")
     counts = [f"{kind}_{which}" for kind in ("probability", "count")
               for which in MARGINALS]  # fmt: skip
     check_complete(dataset, (*numbers, *counts), _NEEDED_ATTRIBUTES)
     about = declared(dataset.attrs)
+    provenance = read_provenance(about)
     grid = PhaseSpaceGrid.from_dict(about["grid"])
     for axis, n in zip(MARGINALS, grid.shape, strict=True):
         check_counts("grid", n, dataset.sizes[axis], f"`{axis}`")
     return CrossCheck(
-        model=read_model(about, {}) if "model" in about else None,
+        model=read_model(about, provenance) if "model" in about else None,
         grid=grid,
         s=dataset["s"].to_numpy(),
         tests=tuple(_read_tests(dataset)),
@@ -71,19 +71,14 @@ def from_xarray(dataset: xr.Dataset) -> CrossCheck:
             which: dataset[f"probability_{which}"].to_numpy() for which in MARGINALS
         },
         counts={which: dataset[f"count_{which}"].to_numpy() for which in MARGINALS},
-        recipe={RECIPE: dataset.attrs[RECIPE]} if RECIPE in about else {},
-        start=(
-            dataset["initial_density"].to_numpy()
-            if "initial_density" in dataset
-            else None
-        ),
+        call=Call.from_xarray(dataset),
+        provenance=provenance,
     )
 
 
 def _read_tests(dataset: xr.Dataset) -> Iterator[AgreementTest]:
     """Yield every test, in the order of arclengths, then names."""
-    known = [number for number in NUMBERS if number in dataset]
-    tables = {number: dataset[number].to_numpy() for number in known}
+    tables = {number: dataset[number].to_numpy() for number in NUMBERS}
     degrees = dataset["degrees"].to_numpy()
     for row, s in enumerate(dataset["s"].to_numpy()):
         for column, name in enumerate(dataset["test"].to_numpy()):

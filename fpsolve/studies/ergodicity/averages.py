@@ -18,8 +18,9 @@ from fpsolve._support.checks import (
     check_noise,
     check_positive,
 )
-from fpsolve._support.labels import made_with
+from fpsolve._support.labels import made_with, marked
 from fpsolve._support.progress import ProgressCallback, reporting
+from fpsolve.evolution.call import recorded
 from fpsolve.model.laydown import LayDownModel
 from fpsolve.model.potentials.dictionaries import potential_to_dict
 from fpsolve.model.potentials.potential import Potential
@@ -34,7 +35,6 @@ from fpsolve.studies.observables import (
     default_observables,
     equilibrium_moments,
 )
-from fpsolve.studies.recipe import recipe
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -77,6 +77,7 @@ class _Task:
     means: Array
 
 
+@recorded()
 def ergodic_averages(
     potential: Potential,
     noises: Iterable[float],
@@ -149,11 +150,6 @@ def ergodic_averages(
     check_kind("potential", potential, Potential, "for instance QuadraticPotential()")
     if functions is not None:
         functions = check_functions(functions)
-    again = recipe("ergodic_averages", {
-        "potential": potential, "noises": noises, "s_end": s_end, "ds": ds,
-        "n_paths": n_paths, "seed": sequence, "functions": functions,
-        "n_saved": n_saved,
-    })  # fmt: skip
     functions = dict(default_observables(potential) if functions is None else functions)
     _check(potential, functions, n_paths, n_saved)
     s_end = check_positive("s_end", s_end)
@@ -170,17 +166,18 @@ def ergodic_averages(
     ]
     squared = np.stack(list(_run(tasks, client, progress)), axis=1)
     dataset = averages_dataset(squared, amplitudes, saved, list(functions), moments)
-    return dataset.assign(
-        ds=("noise", steps, {"long_name": "step ds", "units": "1"})
-    ).assign_attrs(
-        title="Averages along paths started from the equilibrium",
-        equation="(12) of Klar, Marheineke and Wegener (2009)",
-        potential=json.dumps(potential_to_dict(potential)),
-        formula=potential.formula,
-        n_paths=n_paths,
-        seed=json.dumps([sequence.entropy, *sequence.spawn_key]),
-        **made_with(),
-        **again,
+    return (
+        marked(dataset, "averages")
+        .assign(ds=("noise", steps, {"long_name": "step ds", "units": "1"}))
+        .assign_attrs(
+            title="Averages along paths started from the equilibrium",
+            equation="(12) of Klar, Marheineke and Wegener (2009)",
+            potential=json.dumps(potential_to_dict(potential)),
+            formula=potential.formula,
+            n_paths=n_paths,
+            seed=json.dumps([sequence.entropy, *sequence.spawn_key]),
+            **made_with(),
+        )
     )
 
 

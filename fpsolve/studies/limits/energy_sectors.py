@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fpsolve._support.checks import check_noise
-from fpsolve._support.labels import labels, made_with, to_json
+from fpsolve._support.labels import labels, made_with, marked, to_json
 from fpsolve.errors import MemoryLimitError, ToleranceError
+from fpsolve.evolution.call import recorded
 from fpsolve.model.laydown import LayDownModel
 from fpsolve.model.potentials.dictionaries import potential_to_dict
 from fpsolve.model.potentials.potential import Potential
@@ -20,7 +21,6 @@ from fpsolve.spectral.bases.choice import discretisation_for
 from fpsolve.spectral.bases.sectors import Sector
 from fpsolve.spectral.eigen.spectrum import spectrum
 from fpsolve.studies.arguments import series_of
-from fpsolve.studies.recipe import recipe
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -33,6 +33,7 @@ _COUNTS = (3, 5, 9)
 _REAL = 1e-8
 
 
+@recorded()
 def small_noise_spectrum(
     potential: Potential, noises: Iterable[float], *, tolerance: float = 1e-6
 ) -> xr.Dataset:
@@ -103,11 +104,9 @@ def small_noise_spectrum(
         "formula": potential.formula,
         "tolerance": tolerance,
         **made_with(),
-        **recipe("small_noise_spectrum", {
-            "potential": potential, "noises": amplitudes, "tolerance": tolerance,
-        }),
-    }  # fmt: skip
-    return xr.Dataset(variables, coordinates, attributes)
+    }
+    dataset = xr.Dataset(variables, coordinates, attributes)
+    return marked(dataset, "small-noise-spectrum")
 
 
 def _slowest(

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from fpsolve._support.checks import check_finite, check_noise, check_positive
 from fpsolve._support.labels import to_json
 from fpsolve.errors import RunInterrupted
+from fpsolve.evolution.call import recorded
 from fpsolve.model.laydown import LayDownModel
 from fpsolve.model.potentials.potential import Potential
 from fpsolve.model.potentials.quadratic import QuadraticPotential
@@ -30,7 +31,6 @@ from fpsolve.studies.limits.large_noise_cases import (
     resolution_for,
 )
 from fpsolve.studies.limits.large_noise_dataset import large_noise_dataset
-from fpsolve.studies.recipe import recipe
 from fpsolve.studies.sweeps.sweep import SweepProgress, sweep
 
 if TYPE_CHECKING:
@@ -72,6 +72,7 @@ class Settings:
 QUICK = Settings(cell=0.5, turn=0.8, mean=1e-6)
 
 
+@recorded()
 def large_noise_limit(
     potential: Potential,
     noises: Iterable[float],
@@ -168,11 +169,6 @@ def large_noise_limit(
         "slow_length": float(slow_length), "belt_speed_scale": pull,
         "fixed_speed": float(fixed_speed), "p0": to_json(law.to_dict()),
         "quick": int(quick),
-        **recipe("large_noise_limit", {
-            "potential": potential, "noises": amplitudes, "slow_length": slow_length,
-            "belt_speed_scale": pull, "fixed_speed": fixed_speed, "p0": law,
-            "parts": chosen, "quick": quick,
-        }),
     }  # fmt: skip
     try:
         found = sweep(

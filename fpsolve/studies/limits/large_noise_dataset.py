@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve._support.labels import labels, made_with, to_json
+from fpsolve._support.labels import labels, made_with, marked, to_json
 from fpsolve.model.potentials.dictionaries import potential_to_dict
 from fpsolve.model.potentials.potential import Potential
 from fpsolve.model.potentials.quadratic import QuadraticPotential
@@ -40,7 +40,7 @@ def large_noise_dataset(
     }
     rows = [{part: by_place[part, float(noise)] for part in parts} for noise in noises]
     listed = quantities_of(parts, quadratic=isinstance(potential, QuadraticPotential))
-    return xr.Dataset(
+    dataset = xr.Dataset(
         _distances(rows, listed, noises**-2.0) | _statuses(rows, parts),
         {
             "noise": ("noise", noises, labels("noise A")),
@@ -57,6 +57,7 @@ def large_noise_dataset(
             **made_with(),
         },
     )
+    return marked(dataset, "large-noise")
 
 
 def _distances(

@@ -16,13 +16,13 @@ from fpsolve._support.checks import (
     check_positive,
 )
 from fpsolve.errors import RunInterrupted
+from fpsolve.evolution.call import recorded
 from fpsolve.model.potentials.potential import Potential
 from fpsolve.paths.laws import GaussianLaw
 from fpsolve.reduced.energy.process import EnergyProcess
 from fpsolve.studies.arguments import series_of
 from fpsolve.studies.limits.small_noise_case import small_noise_case
 from fpsolve.studies.limits.small_noise_dataset import small_noise_dataset
-from fpsolve.studies.recipe import recipe
 from fpsolve.studies.sweeps.sweep import SweepProgress, sweep
 
 if TYPE_CHECKING:
@@ -40,6 +40,7 @@ _QUICK_SPACING, _QUICK_DS, _QUICK_N_PATHS = 0.16, 0.25, 100_000
 _REFERENCE_NOISE, _POWER = 0.2, 0.25
 
 
+@recorded()
 def small_noise_limit(
     potential: Potential,
     noises: Iterable[float],
@@ -134,11 +135,6 @@ def small_noise_limit(
         for noise in amplitudes
     ]  # fmt: skip
     shape = scales, amplitudes
-    again = recipe("small_noise_limit", {
-        "potential": potential, "noises": amplitudes, "belt_speed_scales": scales,
-        "p0": law, "quick": quick,
-        **{name: options[name] for name in ("slow_length", "ds", "n_paths", "seed")},
-    })  # fmt: skip
     try:
         found = sweep(
             small_noise_case, cases, client=client, workers=workers,
@@ -146,8 +142,8 @@ def small_noise_limit(
         )  # fmt: skip
     except RunInterrupted as interrupt:
         partial = small_noise_dataset(potential, *shape, interrupt.solution, options)
-        raise RunInterrupted(partial.assign_attrs(again)) from None
-    return small_noise_dataset(potential, *shape, found, options).assign_attrs(again)
+        raise RunInterrupted(partial) from None
+    return small_noise_dataset(potential, *shape, found, options)
 
 
 def _checked_noises(potential: Potential, noises: Iterable[float]) -> Array:

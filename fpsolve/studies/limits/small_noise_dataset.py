@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve._support.labels import labels, made_with, to_json
+from fpsolve._support.labels import labels, made_with, marked, to_json
 from fpsolve.model.potentials.dictionaries import potential_to_dict
 from fpsolve.model.potentials.potential import Potential
 from fpsolve.studies.limits.energy_law import N_FUNCTIONS
@@ -86,7 +86,8 @@ def small_noise_dataset(
         "noise": ("noise", noises, labels("noise amplitude A")),
         "epsilon": ("noise", noises**2, labels("ε = A²")),
     }
-    return xr.Dataset(variables, coordinates, _attributes(potential, options))
+    dataset = xr.Dataset(variables, coordinates, _attributes(potential, options))
+    return marked(dataset, "small-noise")
 
 
 def _table(cases: Sequence[Case], name: str, size: int = 1) -> Array:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import nnls
 
-from fpsolve._support.labels import labels, made_with, to_json
+from fpsolve._support.labels import labels, made_with, marked, to_json
 from fpsolve.model.potentials.dictionaries import potential_to_dict
 from fpsolve.model.potentials.potential import Potential
 from fpsolve.studies.rates.bounds import (
@@ -118,7 +118,7 @@ def rates_dataset(
     }
     if "variance" in parts:
         variables |= _shapes(noises, variables["asymptotic_variance"][1])
-    return xr.Dataset(
+    dataset = xr.Dataset(
         variables,
         {name: one for name, one in coordinates.items()
          if name == "noise" or any(name in _dims(v) for v in variables.values())},
@@ -133,6 +133,7 @@ def rates_dataset(
             **made_with(),
         },
     )  # fmt: skip
+    return marked(dataset, "rate")
 
 
 def _dims(variable: Any) -> tuple[str, ...]:

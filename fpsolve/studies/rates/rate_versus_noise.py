@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from fpsolve._support.checks import check_flag, check_positive
 from fpsolve.errors import RunInterrupted
+from fpsolve.evolution.call import recorded
 from fpsolve.model.laydown import LayDownModel
 from fpsolve.model.potentials.potential import Potential
 from fpsolve.model.potentials.quadratic import QuadraticPotential
@@ -23,7 +24,6 @@ from fpsolve.studies.observables import Observable, default_observables
 from fpsolve.studies.rates.bounds import checked_noise
 from fpsolve.studies.rates.cases import PARTS, rate_case
 from fpsolve.studies.rates.dataset import rates_dataset
-from fpsolve.studies.recipe import recipe
 from fpsolve.studies.sweeps.sweep import SweepProgress, sweep
 
 if TYPE_CHECKING:
@@ -69,6 +69,7 @@ QUICK = Settings(
 )
 
 
+@recorded()
 def rate_versus_noise(
     potential: Potential,
     noises: Iterable[float],
@@ -145,11 +146,6 @@ def rate_versus_noise(
     if functions is not None:
         functions = check_functions(functions)
     parts = None if parts is None else names_of(parts)
-    again = recipe("rate_versus_noise", {
-        "potential": potential, "noises": amplitudes, "p0": p0, "quick": quick,
-        "parts": parts, "functions": functions, "tolerance": tolerance,
-        "s_end": s_end,
-    })  # fmt: skip
     functions = dict(default_observables(potential) if functions is None else functions)
     p0 = _checked_start(DEFAULT_START if p0 is None else p0)
     settings = QUICK if quick else Settings()
@@ -173,8 +169,8 @@ def rate_versus_noise(
         )  # fmt: skip
     except RunInterrupted as interrupt:
         partial = rates_dataset(potential, amplitudes, interrupt.solution, about)
-        raise RunInterrupted(partial.assign_attrs(again)) from None
-    return rates_dataset(potential, amplitudes, found, about).assign_attrs(again)
+        raise RunInterrupted(partial) from None
+    return rates_dataset(potential, amplitudes, found, about)
 
 
 def _options(

@@ -1,0 +1,22 @@
+"""Who writes about which kind of result."""
+
+from __future__ import annotations
+
+__all__ = ["PAGES"]
+
+# By the kind of a result "module:name" of a function of it and of the name of its
+# file, which returns a Section. Loaded only when it is asked for.
+PAGES = {
+    "solution": "fpsolve.pages.solution:section",
+    "paths": "fpsolve.pages.paths:section",
+    "hydrodynamic": "fpsolve.pages.limit_solutions:hydrodynamic_section",
+    "energy": "fpsolve.pages.limit_solutions:energy_section",
+    "check": "fpsolve.pages.cross_check:section",
+    "spectrum": "fpsolve.pages.spectrum:section",
+    "rate": "fpsolve.pages.rates:section",
+    "large-noise": "fpsolve.pages.limits:large_section",
+    "small-noise": "fpsolve.pages.limits:small_section",
+    "small-noise-spectrum": "fpsolve.pages.limits:spectrum_section",
+    "energy-tables": "fpsolve.pages.energy:section",
+    "averages": "fpsolve.pages.averages:section",
+}

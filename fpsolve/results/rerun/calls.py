@@ -1,0 +1,78 @@
+"""Repeat a result that says how it was called."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from typing import Any
+
+from fpsolve._support.checks import shown
+from fpsolve.errors import NotRepeatableError
+from fpsolve.evolution.call import WHERE, Call
+from fpsolve.results.kinds import KINDS, kind_of, named
+from fpsolve.results.rerun.arguments import arguments_of
+from fpsolve.results.rerun.costs import check_call
+from fpsolve.results.rerun.missing import unrecorded
+
+__all__ = ["repeat_call"]
+
+# What the command line adds.
+_NOTES = ("command", "configuration")
+
+
+def repeat_call(result: Any, overrides: dict[str, Any]) -> Any:
+    """Call the function of a result as it was called, with the overrides."""
+    place = KINDS[kind_of(result)].function
+    name = place.partition(":")[2]
+    is_study = hasattr(result, "data_vars")
+    call = Call.from_xarray(result) if is_study else result.call
+    if call is None:
+        raise unrecorded("how it was computed", f"`{name}`")
+    if call.function != name:
+        raise NotRepeatableError(
+            f"the result must be made by {name} to be repeated, got "
+            f"{call.function!r}; update fpsolve."
+        )
+    arguments = arguments_of(call, overrides)
+    check_call(name, arguments, result, overrides)
+    again = _called(place, arguments, overrides)
+    if overrides.keys() - WHERE:
+        return again
+    return _noted(result, again)
+
+
+def _called(place: str, arguments: dict[str, Any], given: Mapping[str, Any]) -> Any:
+    """The value of a function, or of a method of an object made for it."""
+    module, _, name = place.partition(":")
+    owner, _, method = name.rpartition(".")
+    if not owner:
+        function = named(place)
+        return function(**_known(function, arguments, given))
+    kind = named(f"{module}:{owner}")
+    own = inspect.signature(kind).parameters
+    made = kind(**{name: arguments.pop(name) for name in own if name in arguments})
+    function = getattr(made, method)
+    return function(**_known(function, arguments, given))
+
+
+def _known(
+    function: Callable[..., Any], arguments: dict[str, Any], given: Mapping[str, Any]
+) -> dict[str, Any]:
+    """The arguments; NotRepeatableError for one that the function does not have."""
+    known = inspect.signature(function).parameters
+    unknown = arguments.keys() - known.keys() - given.keys()
+    if unknown:
+        raise NotRepeatableError(
+            f"the result must be made with the arguments {', '.join(known)} to be "
+            f"repeated, got {shown(sorted(unknown)[0])}; update fpsolve."
+        )
+    return arguments
+
+
+def _noted(old: Any, new: Any) -> Any:
+    """The new result with what a command wrote beside the old one."""
+    if hasattr(old, "data_vars"):
+        return new.assign_attrs({n: old.attrs[n] for n in _NOTES if n in old.attrs})
+    notes = {n: old.provenance[n] for n in _NOTES if n in old.provenance}
+    return replace(new, provenance={**new.provenance, **notes}) if notes else new
