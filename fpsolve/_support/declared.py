@@ -31,7 +31,7 @@ _NUMBERS = (
 )  # fmt: skip
 _INTEGERS = (
     "n_paths", "n_steps", "n_cells", "kept", "agrees", "quick", "signed",
-    "fpsolve_format", "n_energies",
+    "fpsolve_format", "n_energies", "extrapolated",
 )  # fmt: skip
 # JSON: objects, and what is known of their entries.
 _TABLES = (

@@ -30,7 +30,7 @@ __all__ = [
 # Number of these layouts; raised whenever an older version could misread a file.
 FORMAT = 1
 # Entries of `provenance` that stand in for a model that cannot be read back.
-UNREADABLE = ("model_description", "equation")
+UNREADABLE = ("model_description", "equation", "process_description")
 
 
 def marked(dataset: xr.Dataset, kind: str) -> xr.Dataset:

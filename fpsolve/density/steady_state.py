@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from fpsolve._support.blas import one_blas_thread
 from fpsolve._support.checks import check_flag, check_tolerance
+from fpsolve.density.description import described_scheme
 from fpsolve.density.schemes import drift_kick
 from fpsolve.density.schemes.drift_kick import DriftKick
 from fpsolve.density.schemes.scheme import Scheme, checked_scheme
@@ -32,6 +33,7 @@ from fpsolve.density.stationary.requirements import check_stationary, checked_st
 from fpsolve.density.stationary.result import SteadyState
 from fpsolve.density.suggestions import suggest_step
 from fpsolve.errors import DomainTooSmallError, ToleranceError
+from fpsolve.evolution.call import recorded
 from fpsolve.grids import diagnostics
 from fpsolve.grids.phase_space import PhaseSpaceGrid, check_grid
 from fpsolve.model.laydown import LayDownModel
@@ -53,6 +55,7 @@ WORTHLESS = 0.1
 COMPARED = 1.25
 
 
+@recorded(model=described_scheme)
 @one_blas_thread()
 def steady_state(
     model: LayDownModel | Scheme,
@@ -258,5 +261,5 @@ def check_error(result: SteadyState, tolerance: float, order: float) -> None:
         f"({parts}), above `error_tolerance` = {tolerance:g}; {advice}, or raise "
         "`error_tolerance` if this is enough.",
         UserWarning,
-        stacklevel=4,
+        stacklevel=5,
     )

@@ -12,7 +12,13 @@ from fpsolve.model.curves.dictionaries import KINDS as CURVE_KINDS
 from fpsolve.model.laydown import LayDownModel
 from fpsolve.model.potentials.dictionaries import KINDS as POTENTIAL_KINDS
 
-__all__ = ["describe_model", "read_model"]
+__all__ = ["describe_model", "is_of_a_user", "read_model"]
+
+
+_KNOWN: dict[str, Collection[str]] = {
+    "potential": POTENTIAL_KINDS,
+    "curve": CURVE_KINDS,
+}
 
 
 def describe_model(
@@ -30,7 +36,7 @@ def describe_model(
     provenance : mapping
     """
     if model is None:
-        description, equation = (provenance.get(key, "") for key in UNREADABLE)
+        description, equation = (provenance.get(key, "") for key in UNREADABLE[:2])
     else:
         description = to_json(model.to_dict())
     return {"equation": equation or "", "model": description}
@@ -67,14 +73,13 @@ def read_model(
 
 def _of_a_user(description: Mapping[str, Any]) -> bool:
     """Whether the potential or the curve is of a class that fpsolve has not."""
-    known: dict[str, Collection[str]] = {
-        "potential": POTENTIAL_KINDS,
-        "curve": CURVE_KINDS,
-    }
-    parts = {name: description.get(name) for name in known}
-    return any(
+    return any(is_of_a_user(name, description.get(name)) for name in _KNOWN)
+
+
+def is_of_a_user(name: str, part: Any) -> bool:
+    """Whether a "potential" or a "curve" is described as one that fpsolve has not."""
+    return (
         isinstance(part, Mapping)
         and isinstance(part.get("kind"), str)
-        and (part["kind"] not in known[name] or SAMPLED in part)
-        for name, part in parts.items()
+        and (part["kind"] not in _KNOWN[name] or SAMPLED in part)
     )

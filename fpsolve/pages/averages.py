@@ -35,11 +35,13 @@ def section(dataset: xr.Dataset, source: str) -> Section:
         steps = ", ".join(f"{float(ds):.4g}" for ds in dataset["ds"])
         items.append(("step ds", steps))
     alt = "Curves of errors against arclength and of variances against noise"
+    figures = drawings(dataset, {"averages": (_CAPTION, alt)})
+    nothing = Paragraph("There is no figure: a curve needs two noises.")
     parts = [
         Part("Equation", _equations(dataset)),
         Part("Parameters", [Facts(items)]),
         Part("Averages", [_said(), _table(dataset)]),
-        Part("Figure", drawings(dataset, {"averages": (_CAPTION, alt)})),
+        Part("Figure", figures or [nothing]),
         versions_part(dataset),
     ]
     return Section("Averages along paths", source, parts)

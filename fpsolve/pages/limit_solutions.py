@@ -20,15 +20,16 @@ from fpsolve.pages.equations import energy_equations, mathml, potential_equation
 from fpsolve.pages.figures import drawings
 from fpsolve.pages.numbers import evenly, formatted
 from fpsolve.pages.origin import provenance_part, status_notice
-from fpsolve.pages.settings import curve_text, unread_model
+from fpsolve.pages.settings import model_facts, unread_model
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from fpsolve.model.laydown import LayDownModel
     from fpsolve.reduced.energy.solution import EnergySolution
     from fpsolve.reduced.hydrodynamic.solution import HydrodynamicSolution
 
-__all__ = ["energy_section", "hydrodynamic_section"]
+__all__ = ["energy_section", "hydrodynamic_section", "limit_equation"]
 
 # Name of a series: heading, format of its numbers.
 _COLUMNS = {
@@ -46,17 +47,19 @@ _NOT_EXTRAPOLATED = "Not extrapolated: no estimate of the error in ds."
 
 def hydrodynamic_section(solution: HydrodynamicSolution, source: str) -> Section:
     """Return the section of a page about a solution of the limit of much noise."""
+    model = None if solution.limit is None else solution.limit.model
     cells = " × ".join(map(str, solution.grid.shape))
     width1, width2 = solution.grid.half_widths
     items = [
-        *_model_facts(solution),
+        *model_facts(model),
+        *_small_parameter(model),
         ("grid", f"{cells} cells, |ξ₁| < {width1:g}, |ξ₂| < {width2:g}"),
         *_run_facts(solution),
     ]
     caption = "Plane densities at saved s; white: contours of the stationary density."
     return _section(
         "Hydrodynamic limit of much noise", source, solution,
-        _hydrodynamic_equations(solution), items,
+        limit_equation(model, solution.provenance), items,
         {"hydrodynamic": (
             caption, "Maps of the density, and curves of entropy, means and spread"
         )},
@@ -68,12 +71,16 @@ def energy_section(solution: EnergySolution, source: str) -> Section:
     process, grid = solution.process, solution.grid
     signed = "signed G" if grid.signed else "|G|"
     items = [
-        ("potential", f"B = {process.potential.formula}"),
-        ("noise", f"A = {process.noise:g}"),
-        ("grid", f"{grid.n_cells} cells of {signed}, g_max = {process.g_max:.6g}"),
+        ("grid", f"{grid.n_cells} cells of {signed}, g_max = {grid.g_max:.6g}"),
         *_run_facts(solution),
     ]
-    equations = [*energy_equations(), potential_equation(process.potential)]
+    equations: list[Any] = [*energy_equations()]
+    if process is None:
+        equations += unread_model(solution.provenance["process_description"])
+    else:
+        equations.append(potential_equation(process.potential))
+        items = [("potential", f"B = {process.potential.formula}"),
+                 ("noise", f"A = {process.noise:g}"), *items]  # fmt: skip
     return _section(
         "Law of the energy in the limit of little noise", source, solution, equations,
         items,
@@ -102,15 +109,8 @@ def _section(
     return Section(title, source, [part for part in parts if part.blocks])
 
 
-def _model_facts(solution: HydrodynamicSolution) -> list[tuple[str, str]]:
-    if solution.limit is None:
-        return []
-    model, epsilon = solution.limit.model, solution.limit.epsilon
-    return [
-        ("potential", f"B = {model.potential.formula}"),
-        ("noise", f"A = {model.noise:g}, ε = 1/A² = {epsilon:g}"),
-        ("reference curve", curve_text(model.curve)),
-    ]
+def _small_parameter(model: LayDownModel | None) -> list[tuple[str, str]]:
+    return [] if model is None else [("ε = 1/A²", f"{1.0 / model.noise**2:g}")]
 
 
 def _run_facts(solution: Any) -> list[tuple[str, str]]:
@@ -124,15 +124,18 @@ def _run_facts(solution: Any) -> list[tuple[str, str]]:
     ]
 
 
-def _hydrodynamic_equations(solution: HydrodynamicSolution) -> list[Block]:
+def limit_equation(
+    model: LayDownModel | None, provenance: Mapping[str, Any]
+) -> list[Block]:
+    """Return the hydrodynamic limit of a model, or how one of a user's own told it."""
     equation: Equation = mathml(
         r"\partial_s \mathcal{P} = \nabla\cdot(\varepsilon\,\nabla\mathcal{P}"
         r" + (\varepsilon\,\nabla B - v\,e_1)\,\mathcal{P})",
         "∂ₛ𝒫 = ∇·(ε∇𝒫 + (ε∇B - v e₁) 𝒫)",
     )
-    if solution.limit is None:
-        return [equation, *unread_model(solution.provenance)]
-    return [equation, potential_equation(solution.limit.model.potential)]
+    if model is None:
+        return [equation, *unread_model(provenance)]
+    return [equation, potential_equation(model.potential)]
 
 
 def _summary(solution: Any) -> list[Block]:

@@ -21,8 +21,12 @@ from .rates import plot_asymptotic_variance as plot_asymptotic_variance
 from .rates import plot_inverse_decay_rate as plot_inverse_decay_rate
 from .rates import plot_rates as plot_rates
 from .rates import plot_spectrum as plot_spectrum
+from .series import plot_energy_paths as plot_energy_paths
+from .series import plot_hydrodynamic_paths as plot_hydrodynamic_paths
+from .series import plot_spectral as plot_spectral
 from .small_noise import plot_small_noise as plot_small_noise
 from .small_noise import plot_small_noise_spectrum as plot_small_noise_spectrum
+from .stationary import plot_steady_state as plot_steady_state
 from .trajectories import plot_fibre as plot_fibre
 from .trajectories import plot_nozzles as plot_nozzles
 from .trajectories import plot_trajectories as plot_trajectories

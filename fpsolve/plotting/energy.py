@@ -157,7 +157,9 @@ def plot_energy_eigenfunctions(process: EnergyProcess, n: int = 4) -> Figure:
     return figure
 
 
-def _title(process: EnergyProcess, noise: bool = True) -> str:
+def _title(process: EnergyProcess | None, noise: bool = True) -> str:
+    if process is None:
+        return r"$B$ from the user's own functions"
     potential = process.potential
     title = f"$B =$ {_formula(potential.latex, potential.formula)}"
     title += rf",  $g_{{\max}} = {process.g_max:.4g}$"
@@ -230,7 +232,7 @@ def _rosette(process: EnergyProcess, share: float) -> np.ndarray:
 def _draw_law(axes: Axes, solution: EnergySolution) -> None:
     from matplotlib import colormaps
 
-    grid, process = solution.grid, solution.process
+    grid = solution.grid
     wanted = np.unique(np.linspace(0, len(solution.saved_s) - 1, 6).round().astype(int))
     shade = colormaps[DENSITY_MAP]
     for place, index in enumerate(wanted):
@@ -245,7 +247,7 @@ def _draw_law(axes: Axes, solution: EnergySolution) -> None:
     later = solution.densities[wanted[1:]] if len(wanted) > 1 else stationary
     # A start in one cell would leave nothing to see of the rest.
     axes.set_ylim(0, 1.3 * max(float(np.max(later)), float(np.median(stationary))))
-    axes.set_xlim(-process.g_max if grid.signed else 0.0, process.g_max)
+    axes.set_xlim(-grid.g_max if grid.signed else 0.0, grid.g_max)
     axes.set_xlabel("energy $g$")
     axes.set_ylabel("density $p(g, s)$")
     axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=4, borderaxespad=0.2)

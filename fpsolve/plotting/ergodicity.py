@@ -126,7 +126,8 @@ def _draw_errors(
 
 def _draw_slope(axes: Axes) -> None:
     """A line of slope −1/2 above the curves, over the later half of the axis."""
-    places = np.asarray(axes.lines[0].get_xdata())[[-8, -1]]
+    s = np.asarray(axes.lines[0].get_xdata())
+    places = s[[-min(8, s.size), -1]]
     curves = [np.asarray(line.get_data(), dtype=float) for line in axes.lines]
     tops = [float(np.interp(places[0], *curve)) for curve in curves]
     heights = 1.35 * max(tops) * np.sqrt(places[0] / places)

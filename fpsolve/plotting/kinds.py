@@ -30,7 +30,13 @@ from fpsolve.plotting.rates import (
     plot_rates,
     plot_spectrum,
 )
+from fpsolve.plotting.series import (
+    plot_energy_paths,
+    plot_hydrodynamic_paths,
+    plot_spectral,
+)
 from fpsolve.plotting.small_noise import plot_small_noise, plot_small_noise_spectrum
+from fpsolve.plotting.stationary import plot_steady_state
 from fpsolve.plotting.trajectories import plot_fibre, plot_trajectories
 
 if TYPE_CHECKING:
@@ -40,6 +46,9 @@ if TYPE_CHECKING:
     Figures = dict[str, Callable[[Any], Figure]]
 
 __all__ = ["FIGURES"]
+
+# One has no curve, and nothing is fitted to it.
+FEWEST_NOISES = 2
 
 
 def of_solution(solution: Solution) -> Figures:
@@ -125,7 +134,9 @@ def of_energy_tables(dataset: xr.Dataset) -> Figures:
 
 
 def of_averages(dataset: xr.Dataset) -> Figures:
-    """Of averages the first function, and all variances."""
+    """Of averages the first function, and all variances, against the noise."""
+    if dataset.sizes["noise"] < FEWEST_NOISES:
+        return {}
     names = [str(name) for name in dataset["function"].to_numpy()]
     shown = "square" if "square" in names else names[0]
     return {"averages": partial(plot_ergodic_averages, function=shown)}
@@ -137,6 +148,12 @@ FIGURES: dict[str, Callable[[Any], Figures]] = {
     "paths": of_paths,
     "hydrodynamic": of_hydrodynamic,
     "energy": of_energy,
+    "steady-state": lambda result: {"stationary": plot_steady_state},
+    "spectral": lambda solution: {"series": plot_spectral},
+    # A density on whatever grid is chosen, and none before.
+    "spectral-steady-state": lambda result: {},
+    "energy-paths": lambda paths: {"energies": plot_energy_paths},
+    "hydrodynamic-paths": lambda paths: {"moments": plot_hydrodynamic_paths},
     "check": lambda check: {"check": plot_cross_check},
     "spectrum": of_spectrum,
     "rate": of_rates,

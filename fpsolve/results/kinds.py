@@ -26,8 +26,8 @@ class Kind:
     function : str
         "module:name" of the public function that makes one.
     reading : str
-        The module whose `from_xarray` makes the result from its dataset; empty for a
-        study, which is a dataset.
+        "module:name" of what makes the result from its dataset; empty for a study,
+        which is a dataset.
     repeating : str
         "module:name" of what repeats one otherwise than by its `call`.
     counts : str
@@ -51,33 +51,58 @@ _POTENTIAL = ("potential", "formula", "versions")
 # What a result says in `kind`, and its dataset in `fpsolve_kind`.
 KINDS = {
     "solution": Kind(
-        "solutions", "fpsolve.density.solve:solve", "fpsolve.density.reading",
+        "solutions", "fpsolve.density.solve:solve",
+        "fpsolve.density.reading:from_xarray",
         "fpsolve.results.rerun.solutions:repeat_solution", counts="steps",
     ),
     "paths": Kind(
-        "paths", "fpsolve.paths.sampling:sample_paths", "fpsolve.paths.reading",
+        "paths", "fpsolve.paths.sampling:sample_paths",
+        "fpsolve.paths.reading:from_xarray",
         "fpsolve.results.rerun.paths:repeat_paths", counts="steps",
     ),
     "hydrodynamic": Kind(
         "solutions of the hydrodynamic limit",
         "fpsolve.reduced.hydrodynamic.limit:HydrodynamicLimit.solve",
-        "fpsolve.reduced.hydrodynamic.reading",
+        "fpsolve.reduced.hydrodynamic.reading:from_xarray",
         "fpsolve.results.rerun.limits:repeat_hydrodynamic", counts="steps",
     ),
     "energy": Kind(
         "solutions of the energy process",
         "fpsolve.reduced.energy.process:EnergyProcess.solve",
-        "fpsolve.reduced.energy.reading",
+        "fpsolve.reduced.energy.reading:from_xarray",
         "fpsolve.results.rerun.limits:repeat_energy", counts="steps",
+    ),
+    "steady-state": Kind(
+        "stationary densities", "fpsolve.density.steady_state:steady_state",
+        "fpsolve.density.stationary.reading:from_xarray",
+    ),
+    "spectral": Kind(
+        "expansions in time", "fpsolve.spectral.evolution.evolution:spectral_solve",
+        "fpsolve.spectral.evolution.reading:solution_from_xarray",
+    ),
+    "spectral-steady-state": Kind(
+        "stationary expansions",
+        "fpsolve.spectral.evolution.steady:spectral_steady_state",
+        "fpsolve.spectral.evolution.reading:steady_from_xarray",
+    ),
+    "energy-paths": Kind(
+        "paths of the energy process",
+        "fpsolve.reduced.energy.process:EnergyProcess.sample",
+        "fpsolve.reduced.energy.paths_reading:from_xarray",
+    ),
+    "hydrodynamic-paths": Kind(
+        "paths of the hydrodynamic limit",
+        "fpsolve.reduced.hydrodynamic.limit:HydrodynamicLimit.sample",
+        "fpsolve.reduced.hydrodynamic.paths_reading:from_xarray",
     ),
     "check": Kind(
         "checks of density against paths",
         "fpsolve.studies.agreement.cross_check:cross_check",
-        "fpsolve.studies.agreement.reading", counts="steps",
+        "fpsolve.studies.agreement.reading:from_xarray", counts="steps",
     ),
     "spectrum": Kind(
         "spectra", "fpsolve.spectral.eigen.spectrum:spectrum",
-        "fpsolve.spectral.eigen.reading",
+        "fpsolve.spectral.eigen.reading:from_xarray",
     ),
     "rate": Kind(
         "rates against the noise",
@@ -173,7 +198,7 @@ def from_xarray(dataset: xr.Dataset) -> Any:
     """
     kind = KINDS[kind_of(dataset)]
     if kind.reading:
-        return named(f"{kind.reading}:from_xarray")(dataset)
+        return named(kind.reading)(dataset)
     check_complete(dataset, kind.variables, kind.attributes)
     return dataset
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fpsolve._support.checks import check_integer
-from fpsolve._support.labels import labels, marked
+from fpsolve._support.labels import labels, made_with, marked
 from fpsolve.evolution.call import recorded
 from fpsolve.model.potentials.potential import Potential
 from fpsolve.reduced.energy.dataset import process_attributes
@@ -91,6 +91,7 @@ def energy_tables(
     }
     attributes = {
         "title": "energy process of fibre lay-down",
-        **process_attributes(process),
+        **process_attributes(process, {}),
+        **made_with(),
     }
     return marked(xr.Dataset(variables, coordinates, attributes), "energy-tables")

@@ -1,67 +1,303 @@
-"""Every kind of saved result meets every command: it works, or says what it cannot."""
+"""The contract of a result: every kind is saved, loaded, compared, drawn, repeated."""
 
+import importlib
 from functools import cache
+from operator import attrgetter
 
 import numpy as np
 import pytest
 import result_files
+import xarray as xr
 
 import fpsolve as fp
 from fpsolve import plotting, studies
+from fpsolve._support.netcdf import write_dataset
+from fpsolve.errors import NotRepeatableError
+from fpsolve.pages.kinds import PAGES
 from fpsolve.pages.page import report_text
 from fpsolve.plotting.files import possible_figures
+from fpsolve.plotting.kinds import FIGURES
+from fpsolve.results.kinds import KINDS, from_xarray, kind_of, named
 
-PROCESS = fp.EnergyProcess(fp.QuadraticPotential(), 0.5)
-LIMIT = fp.HydrodynamicLimit(
-    fp.LayDownModel(fp.QuadraticPotential(), 2.0, fp.MovingBelt(0.1))
-)
-OWN = fp.HydrodynamicLimit(
-    fp.LayDownModel(fp.IsotropicPotential(lambda r: r**2 / 2, lambda r: r), 2.0)
-)
+QUADRATIC = fp.QuadraticPotential()
+REST = fp.LayDownModel(QUADRATIC, 1.0)
+BELT = fp.LayDownModel(QUADRATIC, 1.0, fp.MovingBelt(0.2))
+PROCESS = fp.EnergyProcess(QUADRATIC, 0.5)
+LIMIT = fp.HydrodynamicLimit(fp.LayDownModel(QUADRATIC, 2.0, fp.MovingBelt(0.1)))
+OWN_POTENTIAL = fp.IsotropicPotential(lambda r: r**2 / 2, lambda r: r)
+OWN = fp.HydrodynamicLimit(fp.LayDownModel(OWN_POTENTIAL, 2.0))
+OWN_PROCESS = fp.EnergyProcess(OWN_POTENTIAL, 0.5)
+GRID = fp.PhaseSpaceGrid(5.0, (12, 12, 8))
+WIDE = fp.PhaseSpaceGrid(6.0, (24, 24, 16))
+FINER = fp.PhaseSpaceGrid(5.5, (24, 24, 16))
 PLANE = fp.PlaneGrid(5.0, (16, 16))
+NARROW = fp.paths.GaussianLaw((0.5, 0.0), 0.8, 1.0, 1.0)
+# The grids are coarse ones, made for quick tests.
+LENIENT = {"boundary_tolerance": 1.0, "mass_tolerance": 1.0, "entropy_tolerance": 1.0}
+SEVERAL = {"save_at": (0.0, 0.5, 1.0), "extrapolate": True}
 
 
 def start(xi1, xi2):
     return np.exp(-((xi1 - 1) ** 2) - xi2**2)
 
 
+def start_on(grid):
+    return fp.initial.gaussian(grid, (0.5, 0.0), 0.8, angle=1.0, concentration=1.0)
+
+
 def hydrodynamic(limit=LIMIT, **options):
     return limit.solve(start, (0.0, 1.0), 0.25, grid=PLANE, **options)
 
 
-def energy(signed=False, **options):
-    grid = PROCESS.grid(12, signed)
-    return PROCESS.solve(0.3, (0.0, 1.0), 0.25, grid=grid, **options)
+def energy(signed=False, process=PROCESS, **options):
+    grid = process.grid(12, signed)
+    return process.solve(0.3, (0.0, 1.0), 0.25, grid=grid, **options)
+
+
+# Of every kind at least one, by what computes it, beginning with the kind.
+MAKERS = {
+    "solution": lambda: fp.solve(
+        fp.drift_kick(REST, GRID), start_on(GRID), (0.0, 0.5), 0.25, save_at=[0.5],
+        **LENIENT,
+    ),
+    "paths": lambda: fp.sample_paths(BELT, 40, 0.5, 0.25, seed=3, initial=NARROW),
+    "hydrodynamic": lambda: hydrodynamic(**SEVERAL),
+    "hydrodynamic, plain": hydrodynamic,
+    "energy": lambda: energy(**SEVERAL),
+    "energy, signed": lambda: energy(signed=True),
+    "steady-state": lambda: fp.steady_state(REST, WIDE, error_tolerance=1.0),
+    "steady-state, a scheme": lambda: fp.steady_state(
+        fp.drift_kick(REST, WIDE), ds=0.25, error_tolerance=1.0
+    ),
+    "spectral": lambda: fp.spectral_solve(
+        REST, NARROW, [0.0, 1.0], tolerance=1e-2
+    ),
+    "spectral, from a grid": lambda: fp.spectral_solve(
+        REST, (FINER, start_on(FINER)), [1.0], tolerance=1e-2
+    ),
+    "spectral-steady-state": lambda: fp.spectral_steady_state(BELT, tolerance=1e-2),
+    # An iterator is used up by the call, and kept for its repetition.
+    "energy-paths": lambda: PROCESS.sample(
+        50, 1.0, 0.25, seed=2, initial="stationary", save_at=iter([0.5, 1.0])
+    ),
+    "hydrodynamic-paths": lambda: LIMIT.sample(
+        50, 1.0, seed=np.random.SeedSequence(7, spawn_key=(1,)),
+        initial=(PLANE, start(*PLANE.mesh())), save_at=[0.0, 1.0],
+    ),
+    "check": lambda: studies.cross_check(
+        REST, start_on(FINER), [0.5], n_paths=1000, seed=1, grid=FINER, ds=0.25,
+        paths_ds=0.125, solve_options={"boundary_tolerance": 1.0},
+    ),
+    "spectrum": lambda: fp.spectrum(REST, 3, tolerance=1e-4),
+    "rate": lambda: studies.rate_versus_noise(
+        QUADRATIC, [2.0], quick=True, parts=["gap"], workers=0
+    ),
+    "large-noise": lambda: studies.large_noise_limit(
+        QUADRATIC, [1.4], quick=True, parts=["gap"], workers=0
+    ),
+    "small-noise": lambda: studies.small_noise_limit(
+        QUADRATIC, [0.8], belt_speed_scales=[0.0], slow_length=0.25, n_paths=50,
+        quick=True,
+    ),
+    "small-noise-spectrum": lambda: studies.small_noise_spectrum(
+        QUADRATIC, [0.8], tolerance=1e-3
+    ),
+    "energy-tables": lambda: result_files.energy(),
+    "averages": lambda: studies.ergodic_averages(
+        QUADRATIC, [1.0, 2.0], s_end=2.0, n_paths=40, seed=1
+    ),
+    "averages, one noise": lambda: studies.ergodic_averages(
+        QUADRATIC, [1.0], s_end=2.0, n_paths=40, seed=1
+    ),
+}  # fmt: skip
 
 
 @cache
-def results():
-    several = {"save_at": (0.0, 0.5, 1.0), "extrapolate": True}
-    return {
-        "hydrodynamic": hydrodynamic(**several),
-        "hydrodynamic, plain": hydrodynamic(),
-        "energy": energy(**several),
-        "energy, signed": energy(signed=True),
-    }
+def result(name):
+    return MAKERS[name]()
 
 
-NAMES = ["hydrodynamic", "hydrodynamic, plain", "energy", "energy, signed"]
+def saved(found, path):
+    return found.save(path) if hasattr(found, "save") else write_dataset(found, path)
+
+
+def test_the_three_tables_know_the_same_kinds():
+    assert KINDS.keys() == FIGURES.keys() == PAGES.keys()
+    assert KINDS.keys() == {name.partition(",")[0] for name in MAKERS}
+
+
+@pytest.mark.parametrize("name", KINDS)
+def test_what_a_row_names_is_there(name):
+    kind = KINDS[name]
+    module, _, function = kind.function.partition(":")
+    assert callable(attrgetter(function)(importlib.import_module(module)))
+    for place in (kind.reading, kind.repeating, PAGES[name]):
+        assert not place or callable(named(place))
+
+
+@pytest.mark.parametrize("name", MAKERS)
+def test_a_result_says_its_kind_and_equals_itself(name):
+    assert kind_of(result(name)) == name.partition(",")[0]
+    comparison = fp.compare(result(name), result(name))
+    assert comparison.equal
+    assert not comparison.parameters
 
 
 @pytest.mark.parametrize("ending", ["nc", "zarr"])
-@pytest.mark.parametrize("name", NAMES)
-def test_a_solution_of_a_limit_is_loaded_and_repeated_bit_for_bit(
-    name, ending, tmp_path
-):
-    path = results()[name].save(tmp_path / f"run.{ending}")
-    assert fp.compare(path, results()[name]).equal
-    assert fp.compare(fp.load(path), results()[name]).equal
-    assert fp.compare(path, fp.rerun(path)).equal
+@pytest.mark.parametrize("name", MAKERS)
+def test_a_result_is_loaded_bit_for_bit(name, ending, tmp_path):
+    path = saved(result(name), tmp_path / f"result.{ending}")
+    loaded = fp.load(path)
+    assert type(loaded) is type(result(name))
+    for one in (path, loaded):
+        comparison = fp.compare(result(name), one)
+        assert comparison.equal, str(comparison)
+        assert not comparison.parameters
+    # And what is loaded is saved as it was.
+    again = saved(loaded, tmp_path / f"again.{ending}")
+    assert fp.compare(path, again).equal
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", MAKERS)
+def test_a_result_is_repeated_from_its_file_to_the_last_bit(name, tmp_path):
+    path = saved(result(name), tmp_path / "result.nc")
+    again = fp.rerun(path)
+    assert type(again) is type(result(name))
+    comparison = fp.compare(path, again)
+    assert comparison.equal, str(comparison)
+    assert not comparison.parameters
+
+
+@pytest.mark.parametrize("name", MAKERS)
+def test_a_result_is_told_with_figures_and_where_it_comes_from(name, tmp_path):
+    path = saved(result(name), tmp_path / "result.nc")
+    page = report_text(path)
+    assert "result.nc" in page
+    figures = possible_figures(result(name))
+    assert page.count("<figure") == len(figures)
+    assert figures or "There is no figure: " in page
+    assert "numpy" in page
+
+
+# Numbers that a page must tell, by the kind.
+NUMBERS = {
+    "steady-state": lambda found: f"{found.error:.2g}",
+    "spectral": lambda found: f"{found.mean_xi1[-1]:.10g}",
+    "spectral-steady-state": lambda found: f"{found.moments['mean_xi1']:.10g}",
+    "energy-paths": lambda found: f"{found.g[-1].mean():.5g}",
+    "hydrodynamic-paths": lambda found: f"{found.mean()[0][-1, 0]:.5g}",
+    "spectrum": lambda found: f"{found.gap:.12g}",
+    "averages": lambda found: f"{float(found['expectation'][0]):.6g}",
+    "small-noise-spectrum": lambda found: f"{float(found['limit'][0]):.6g}",
+}
+
+
+@pytest.mark.parametrize("name", NUMBERS)
+def test_a_page_tells_the_numbers(name):
+    assert NUMBERS[name](result(name)) in report_text(result(name))
+
+
+def test_every_figure_of_a_result_is_written(tmp_path):
+    for name in ("steady-state", "spectral", "energy-paths", "hydrodynamic-paths"):
+        (path,) = plotting.save_figures(result(name), tmp_path, prefix=f"{name}-")
+        assert path.read_bytes().startswith(b"\x89PNG")
+
+
+def test_what_is_loaded_answers_like_what_was_saved(tmp_path):
+    def loaded(name):
+        return fp.load(saved(result(name), tmp_path / f"{name}.nc"))
+
+    spectral, spectrum = loaded("spectral"), loaded("spectrum")
+    np.testing.assert_array_equal(
+        spectral.density(1.0, GRID), result("spectral").density(1.0, GRID)
+    )
+    steady = loaded("spectral-steady-state")
+    assert steady.density_error(GRID) == result("spectral-steady-state").density_error(
+        GRID
+    )
+    for i in range(3):
+        np.testing.assert_array_equal(
+            spectrum.eigenfunction(i, GRID), result("spectrum").eigenfunction(i, GRID)
+        )
+        np.testing.assert_array_equal(
+            spectrum.density_mode(i, GRID), result("spectrum").density_mode(i, GRID)
+        )
+    assert str(spectrum) == str(result("spectrum"))
+    assert repr(loaded("steady-state")) == repr(result("steady-state"))
+
+
+def test_arguments_of_a_method_and_of_its_object_can_be_changed():
+    paths = result("energy-paths")
+    assert fp.rerun(paths, noise=1.0).process.noise == 1.0
+    assert fp.rerun(paths, n_paths=7).g.shape == (2, 7)
+    other = fp.rerun(result("hydrodynamic-paths"), model=OWN.model, ds=0.25)
+    assert other.method == "heun"
+    assert fp.rerun(result("steady-state"), grid=FINER).grid == FINER
+
+
+OWN_RESULTS = {
+    "steady-state": (
+        lambda: fp.steady_state(OWN.model, WIDE, error_tolerance=1.0), "model"
+    ),
+    "hydrodynamic-paths": (
+        lambda: OWN.sample(20, 0.5, 0.25, seed=1, initial=(1.0, 0.0)), "model"
+    ),
+    "energy-paths": (
+        lambda: OWN_PROCESS.sample(20, 0.5, 0.25, seed=1, initial=0.2), "potential"
+    ),
+    "energy": (lambda: energy(process=OWN_PROCESS), "potential"),
+    "hydrodynamic": (lambda: hydrodynamic(OWN), "model"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", OWN_RESULTS)
+def test_code_of_the_users_own_is_described_and_must_be_given_again(name, tmp_path):
+    make, argument = OWN_RESULTS[name]
+    found = make()
+    path = found.save(tmp_path / "own.nc")
+    with pytest.warns(UserWarning, match="could not be read back"):
+        loaded = fp.load(path)
+    assert fp.compare(found, loaded).equal
+    assert fp.compare(path, loaded.save(tmp_path / "again.nc")).equal
+    with pytest.warns(UserWarning, match="could not be read back"):
+        page = report_text(path)
+    assert "a user&#39;s own functions" in page
+    with pytest.raises(NotRepeatableError, match=f"`{argument}` was your own code"):
+        fp.rerun(path)
+    given = {"model": OWN.model, "potential": OWN_POTENTIAL}[argument]
+    assert fp.compare(found, fp.rerun(path, **{argument: given})).equal
+
+
+def test_a_start_of_ones_own_is_named_when_paths_of_a_limit_are_repeated(tmp_path):
+    paths = LIMIT.sample(
+        20, 0.5, seed=1, initial=lambda rng, n: rng.normal(size=(n, 2))
+    )
+    with pytest.raises(NotRepeatableError, match="`initial` was your own code"):
+        fp.rerun(paths.save(tmp_path / "own.nc"))
+
+
+def test_a_tampered_expansion_is_refused_by_name():
+    dataset = result("spectral").to_xarray()
+    wrong = dataset.assign(limit=("held_degree", dataset["limit"].values + 1))
+    with pytest.raises(ValueError, match="`coefficient` must fill the limits"):
+        from_xarray(wrong)
+    with pytest.raises(ValueError, match="`limit` must hold harmonics of every degree"):
+        from_xarray(dataset.assign(limit=("held_degree", dataset["limit"].values * 0
+                                             + 10**6)))  # fmt: skip
+
+
+def test_what_is_no_result_is_named():
+    with pytest.raises(TypeError, match="`result` must be a result of fpsolve"):
+        fp.compare(3, 3)
+    with pytest.raises(TypeError, match="`result` must be a result of fpsolve"):
+        plotting.save_figures(3, "figures")
+    with pytest.raises(ValueError, match="it is not a result of fpsolve"):
+        plotting.save_figures(xr.Dataset(), "figures")
+
+
+@pytest.mark.parametrize("name", ["hydrodynamic", "hydrodynamic, plain", "energy"])
 def test_a_report_about_a_solution_of_a_limit_tells_its_numbers(name):
-    solution = results()[name]
+    solution = result(name)
     page = report_text(solution)
     assert page.count("<figure") == 1
     assert f"ds = {solution.ds:g}" in page
@@ -72,19 +308,9 @@ def test_a_report_about_a_solution_of_a_limit_tells_its_numbers(name):
         assert f"{solution.errors['relative_entropy'].max():.1e}" in page
 
 
-def test_a_limit_of_a_users_own_potential_is_reported_as_it_describes_itself(tmp_path):
-    path = hydrodynamic(OWN).save(tmp_path / "run.nc")
-    with pytest.warns(UserWarning, match="the model could not be read back"):
-        page = report_text(path)
-    assert "a user&#39;s own functions" in page
-    assert page.count("<figure") == 1
-    with pytest.raises(fp.errors.NotRepeatableError, match="`model` was your own code"):
-        fp.rerun(path)
-
-
 def test_the_commands_write_what_they_can(fpsolve, tmp_path):
-    results()["hydrodynamic"].save(tmp_path / "h.nc")
-    results()["energy"].save(tmp_path / "e.nc")
+    result("hydrodynamic").save(tmp_path / "h.nc")
+    result("energy").save(tmp_path / "e.nc")
     assert fpsolve("plot", "h.nc").output.split() == ["h-hydrodynamic.png"]
     assert fpsolve("plot", "e.nc").output.split() == ["e-law.png"]
     assert fpsolve("compare", "h.nc", "h.nc").exit_code == 0

@@ -4,13 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from fpsolve.density.stationary.dataset import to_xarray
+from fpsolve.evolution.call import Call
+from fpsolve.evolution.saved import Saved
 from fpsolve.grids import diagnostics
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.model.laydown import LayDownModel
+
+if TYPE_CHECKING:
+    import xarray
 
 __all__ = ["SteadyState"]
 
@@ -18,7 +25,7 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class SteadyState:
+class SteadyState(Saved):
     """A density with L* p = 0, and how well it is known.
 
     Attributes
@@ -48,7 +55,13 @@ class SteadyState:
     extrapolated : bool
         Whether several step lengths were combined.
     model : LayDownModel
+    call : Call or None
+        How it was made.
+    provenance : dict
+        Versions, environment, date and times.
     """
+
+    kind: ClassVar[str] = "steady-state"
 
     density: Array
     residual: float
@@ -61,6 +74,8 @@ class SteadyState:
     splitting: Mapping[str, float] = field(default_factory=dict)
     extrapolated: bool = False
     model: LayDownModel | None = None
+    call: Call | None = None
+    provenance: dict[str, Any] = field(default_factory=dict)
 
     def __repr__(self) -> str:
         moments, known = self.moments(), self.moment_errors
@@ -77,6 +92,10 @@ class SteadyState:
     def marginal(self, which: str) -> Array:
         """∫ p over the other variables: "xi", "alpha", "xi1" or "xi2"."""
         return diagnostics.marginal(self.density, self.grid, which)
+
+    def to_xarray(self) -> xarray.Dataset:
+        """Labelled Dataset: density (xi1, xi2, alpha), moments, errors of all."""
+        return to_xarray(self)
 
     def moments(self) -> dict[str, float]:
         """E ξ, covariance of ξ, E cos α (−v for every potential), E sin α (0)."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from fpsolve._support.labels import labels, made_with, marked, origin, to_json
+from fpsolve._support.labels import labels, marked, origin, to_json
 from fpsolve.model.potentials.dictionaries import potential_to_dict
 
 if TYPE_CHECKING:
@@ -60,7 +60,7 @@ def to_xarray(solution: Any) -> xr.Dataset:
     }
     attributes = {
         "title": "law of the energy process of fibre lay-down",
-        **process_attributes(solution.process),
+        **process_attributes(solution.process, solution.provenance),
         **origin(solution.provenance),
         "n_cells": grid.n_cells,
         "signed": int(grid.signed),
@@ -71,8 +71,13 @@ def to_xarray(solution: Any) -> xr.Dataset:
     return marked(xr.Dataset(variables, coordinates, attributes), "energy")
 
 
-def process_attributes(process: Any) -> dict[str, Any]:
-    """Return the attributes that say which process it is, and what made the dataset."""
+def process_attributes(process: Any, provenance: Any) -> dict[str, Any]:
+    """Return the attributes that say which process it is.
+
+    Of a process that could not be read back they go on as they came.
+    """
+    if process is None:
+        return dict(provenance["process_description"])
     return {
         "equation": "dG = −(A²/2) G ds + σ(G) dW, σ² = A² J(G)/S(G)",
         "potential": to_json(potential_to_dict(process.potential)),
@@ -80,5 +85,4 @@ def process_attributes(process: Any) -> dict[str, Any]:
         "noise": process.noise,
         "radius": process.radius,
         "g_max": process.g_max,
-        **made_with(),
     }

@@ -58,18 +58,35 @@ class EnergyGrid:
                 f"`n_cells` must be even on a signed grid, got {n_cells}: zero must be "
                 "a face."
             )
-        self.averages, self.n_cells, self.signed = averages, n_cells, signed
+        self.averages: Any = averages
+        self.n_cells, self.signed = n_cells, signed
+
+    @classmethod
+    def of_cells(
+        cls, faces: Array, centres: Array, equilibrium: Array, signed: bool
+    ) -> EnergyGrid:
+        """Return cells as a file holds them, without their process.
+
+        They have no generator: nothing can be solved on them.
+        """
+        made = cls.__new__(cls)
+        made.averages, made.n_cells, made.signed = None, centres.size, signed
+        vars(made).update(faces=faces, centres=centres, equilibrium=equilibrium)
+        return made
 
     @property
     def g_max(self) -> float:
         """Energy of the circle."""
-        return self.averages.well.g_max
+        return float(self.faces[-1])
 
     @cached_property
     def faces(self) -> Array:
         """Ends of the cells, ascending, shape (n_cells + 1,)."""
         n_upper = self.n_cells // 2 if self.signed else self.n_cells
-        upper = self.g_max * np.sin(np.pi / 2 * np.linspace(0.0, 1.0, n_upper + 1)) ** 2
+        upper = (
+            self.averages.well.g_max
+            * np.sin(np.pi / 2 * np.linspace(0.0, 1.0, n_upper + 1)) ** 2
+        )
         return np.concatenate([-upper[:0:-1], upper]) if self.signed else upper
 
     @property
@@ -92,11 +109,11 @@ class EnergyGrid:
     @property
     def total(self) -> float:
         """∫ S over the grid."""
-        return self.averages.total * (2 if self.signed else 1)
+        return float(self.averages.total) * (2 if self.signed else 1)
 
     @property
     def _action(self) -> Array:
-        return self.averages.action(np.abs(self.faces))
+        return np.asarray(self.averages.action(np.abs(self.faces)))
 
     def generator(self, noise: float) -> Any:
         """Q of dm/ds = Q m for the cell masses m, a tridiagonal sparse array.

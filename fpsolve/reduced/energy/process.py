@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -12,6 +13,7 @@ from fpsolve._support.checks import check_flag
 from fpsolve._support.progress import ProgressCallback, reporting
 from fpsolve._support.provenance import Stopwatch
 from fpsolve.errors import RunInterrupted
+from fpsolve.evolution.call import recorded
 from fpsolve.evolution.schedule import checked_stops, make_schedule
 from fpsolve.reduced.energy.coefficients import Coefficients
 from fpsolve.reduced.energy.grid import EnergyGrid
@@ -202,6 +204,7 @@ class EnergyProcess(Coefficients):
                 partial = solution(interrupt.solution, None, "interrupted")
                 raise RunInterrupted(partial) from None
 
+    @recorded()
     @one_blas_thread()
     def sample(
         self,
@@ -239,7 +242,7 @@ class EnergyProcess(Coefficients):
         ValueError
             If an argument does not fit.
         """
-        return sample_energies(
+        paths = sample_energies(
             self._averages,
             self.noise,
             n_paths,
@@ -250,6 +253,7 @@ class EnergyProcess(Coefficients):
             save_at,
             method,
         )
+        return replace(paths, process=self)
 
     def __repr__(self) -> str:
         return f"EnergyProcess({self.potential!r}, noise={self.noise:g})"

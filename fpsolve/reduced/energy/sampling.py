@@ -4,20 +4,26 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache
-from typing import Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from fpsolve._support.checks import check_integer, check_one_of, check_real
 from fpsolve._support.memory import check_memory
+from fpsolve.evolution.call import Call
+from fpsolve.evolution.saved import Saved
 from fpsolve.evolution.schedule import make_schedule
 from fpsolve.reduced.energy.averages import OrbitAverages
 from fpsolve.reduced.energy.checks import check_energies
 from fpsolve.reduced.energy.grid import EnergyGrid
+from fpsolve.reduced.energy.paths_dataset import to_xarray
 from fpsolve.reduced.energy.steps import Sphere, Transition
+
+if TYPE_CHECKING:
+    import xarray
 
 __all__ = ["EnergyPaths", "sample_energies"]
 
@@ -28,7 +34,7 @@ METHODS: dict[str, Any] = {"transition": Transition, "sphere": Sphere}
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class EnergyPaths:
+class EnergyPaths(Saved):
     """Signed energies G of independent paths at the saved arclengths.
 
     Attributes
@@ -39,13 +45,28 @@ class EnergyPaths:
     ds : float
     seed : int
     method : str
+    process : EnergyProcess or None
+        Of which they are; None if its potential could not be read back.
+    call : Call or None
+        How it was made.
+    provenance : dict
+        Versions, environment, date and times.
     """
+
+    kind: ClassVar[str] = "energy-paths"
 
     s: Array
     g: Array
     ds: float
     seed: int
     method: str
+    process: Any = None
+    call: Call | None = None
+    provenance: dict[str, Any] = field(default_factory=dict)
+
+    def to_xarray(self) -> xarray.Dataset:
+        """Labelled Dataset: energies over (s, path)."""
+        return to_xarray(self)
 
     def histogram(self, grid: EnergyGrid) -> Array:
         """Share of the paths in each cell at each saved s, (n_saved, n_cells)."""

@@ -12,6 +12,7 @@ from fpsolve._support.blas import one_blas_thread
 from fpsolve._support.checks import check_flag, check_tolerance
 from fpsolve._support.progress import ProgressCallback
 from fpsolve.errors import DomainTooSmallError
+from fpsolve.evolution.call import recorded
 from fpsolve.evolution.schedule import checked_stops
 from fpsolve.grids import diagnostics
 from fpsolve.grids.phase_space import PhaseSpaceGrid
@@ -221,6 +222,7 @@ class HydrodynamicLimit(LimitEquation):
             )
         return float(OrnsteinUhlenbeckLimit(self.model).rates.min())
 
+    @recorded()
     def sample(
         self,
         n_paths: int,

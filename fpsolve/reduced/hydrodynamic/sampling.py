@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,12 +14,18 @@ from fpsolve._support.arrays import check_numbers
 from fpsolve._support.checks import check_integer, check_positive
 from fpsolve._support.memory import check_memory
 from fpsolve.errors import NonFinitePathError
+from fpsolve.evolution.call import Call
+from fpsolve.evolution.saved import Saved
 from fpsolve.evolution.schedule import Schedule, make_schedule
 from fpsolve.evolution.schedule import checked_stops as checked_series
 from fpsolve.grids.plane import PlaneGrid
 from fpsolve.model.laydown import LayDownModel
 from fpsolve.model.potentials.quadratic import QuadraticPotential
 from fpsolve.reduced.hydrodynamic.ornstein_uhlenbeck import OrnsteinUhlenbeckLimit
+from fpsolve.reduced.hydrodynamic.paths_dataset import to_xarray
+
+if TYPE_CHECKING:
+    import xarray
 
 __all__ = ["METHODS", "HydrodynamicPaths", "sample"]
 
@@ -29,7 +35,7 @@ METHODS = ("exact", "heun")
 
 
 @dataclass(frozen=True, eq=False)
-class HydrodynamicPaths:
+class HydrodynamicPaths(Saved):
     """Positions ξ of independent paths of the limit process.
 
     Attributes
@@ -39,12 +45,27 @@ class HydrodynamicPaths:
     method : {"exact", "heun"}
     ds : float
         Step; for "exact" the longest distance between two saved points.
+    model : LayDownModel or None
+        Of which they are; None if it could not be read back.
+    call : Call or None
+        How it was made.
+    provenance : dict
+        Versions, environment, date and times.
     """
+
+    kind: ClassVar[str] = "hydrodynamic-paths"
 
     s: Array
     xi: Array
     method: str
     ds: float
+    model: LayDownModel | None = None
+    call: Call | None = None
+    provenance: dict[str, Any] = field(default_factory=dict)
+
+    def to_xarray(self) -> xarray.Dataset:
+        """Labelled Dataset: ξ over (s, path, component), means and covariances."""
+        return to_xarray(self)
 
     @property
     def n_paths(self) -> int:
@@ -86,7 +107,8 @@ def sample(
     if method == "exact":
         stops = checked_stops(s_end, save_at)
         check_room(n_paths, stops.size)
-        return _exact(model, starts(initial, n_paths, rng), stops, rng)
+        paths = _exact(model, starts(initial, n_paths, rng), stops, rng)
+        return replace(paths, model=model)
     if ds is None:
         raise ValueError(
             "`ds` must be given for the method 'heun', got None; its bias is of order "
@@ -94,7 +116,8 @@ def sample(
         )
     schedule = make_schedule((0.0, s_end), ds, save_at)
     check_room(n_paths, len(schedule.saves))
-    return _heun(model, starts(initial, n_paths, rng), schedule, rng)
+    paths = _heun(model, starts(initial, n_paths, rng), schedule, rng)
+    return replace(paths, model=model)
 
 
 def checked_seed(seed: Any) -> Any:

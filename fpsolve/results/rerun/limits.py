@@ -41,8 +41,22 @@ def repeat_energy(
     start = given.pop("start", solution.initial_masses)
     if run is None or start is None:
         raise unrecorded("how the run began", "`EnergyProcess.solve`")
+    process = _process(solution, given)
     check_run(solution, run, overrides)
-    found: EnergySolution = solution.process.solve(
-        start, **{"grid": solution.grid, **run, **given}
-    )
+    grid = process.grid(solution.grid.n_cells, solution.grid.signed)
+    found: EnergySolution = process.solve(start, **{"grid": grid, **run, **given})
     return found
+
+
+def _process(solution: EnergySolution, given: dict[str, Any]) -> Any:
+    """The process of the run, of another potential or noise if these are given."""
+    from fpsolve.reduced.energy.process import EnergyProcess
+
+    known = solution.process
+    described = solution.provenance.get("process_description", {})
+    noise = given.pop("noise", described.get("noise") if known is None else known.noise)
+    if "potential" not in given and known is None:
+        raise own_code("potential", described.get("formula", ""))
+    return EnergyProcess(
+        given.pop("potential", getattr(known, "potential", None)), noise
+    )

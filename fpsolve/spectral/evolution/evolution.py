@@ -15,6 +15,7 @@ from fpsolve._support.blas import one_blas_thread
 from fpsolve._support.checks import check_positive
 from fpsolve._support.memory import allowed_memory
 from fpsolve.errors import MemoryLimitError
+from fpsolve.evolution.call import recorded
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.grids.row_sums import MOMENTS
 from fpsolve.model.laydown import LayDownModel
@@ -57,6 +58,7 @@ CHEAPER = 1e-4
 ARRAYS = 5
 
 
+@recorded()
 @one_blas_thread()
 def spectral_solve(
     model: LayDownModel,

@@ -80,14 +80,33 @@ class Expansion:
         target.clear_outside()
         return target
 
+    @classmethod
+    def unpacked(cls, limits: Limits, packed: Array) -> Expansion:
+        """The expansion whose `packed` values these are."""
+        made = cls.empty(limits)
+        made.values[~made._outside()] = packed
+        return made
+
+    @staticmethod
+    def size(limits: Limits) -> int:
+        """Length of `packed` within these limits."""
+        return int(np.sum((np.arange(limits.size) + 1) * 2 * (limits + 1)))
+
+    def packed(self) -> Array:
+        """Values within the limits, in the order of the array."""
+        return np.asarray(self.values[~self._outside()])
+
     def clear_outside(self) -> None:
         """Set to zero what lies outside the limits."""
+        self.values[self._outside()] = 0.0
+
+    def _outside(self) -> NDArray[np.bool_]:
         n, width = self.values.shape[0], self.values.shape[2]
         padded = np.full(2 * n, -1)
         padded[: self.limits.size] = self.limits
         allowed = padded[np.add.outer(np.arange(n), np.arange(n))]
         harmonic = np.arange(width) // 2
-        self.values[harmonic[None, None, :] > allowed[:, :, None]] = 0.0
+        return np.asarray(harmonic[None, None, :] > allowed[:, :, None])
 
 
 def significant(energies: Array, threshold: float) -> NDArray[np.bool_]:

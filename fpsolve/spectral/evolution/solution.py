@@ -2,20 +2,27 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fpsolve._support.checks import told_apart
+from fpsolve.evolution.call import Call
+from fpsolve.evolution.saved import Saved
 from fpsolve.evolution.schedule import index_of
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.model.laydown import LayDownModel
 from fpsolve.spectral.evolution import quadrature
+from fpsolve.spectral.evolution.dataset import solution_dataset
 from fpsolve.spectral.evolution.expansion import Expansion
 from fpsolve.spectral.evolution.quadratic import quadratic
 from fpsolve.spectral.evolution.steady import SpectralSteadyState, spectral_steady_state
+
+if TYPE_CHECKING:
+    import xarray
 
 __all__ = ["SpectralSolution"]
 
@@ -23,7 +30,7 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class SpectralSolution:
+class SpectralSolution(Saved):
     """H(s) and moments of p(ξ, α, s), with an error estimate for every number.
 
     Attributes `mass`, `relative_entropy`, `mean_xi1`, `mean_xi2`, `variance_xi1`,
@@ -43,7 +50,13 @@ class SpectralSolution:
     truncation : tuple of (int, int)
         Degree and largest harmonic kept at each s.
     tolerance : float
+    call : Call or None
+        How it was made.
+    provenance : dict
+        Versions, environment, date and times.
     """
+
+    kind: ClassVar[str] = "spectral"
 
     model: LayDownModel
     s: Array
@@ -52,6 +65,8 @@ class SpectralSolution:
     truncation: tuple[tuple[int, int], ...]
     tolerance: float
     _expansions: tuple[Expansion, ...]
+    call: Call | None = None
+    provenance: dict[str, Any] = field(default_factory=dict)
 
     def __getattr__(self, name: str) -> Array:
         series: dict[str, Array] = self.__dict__.get("series", {})
@@ -88,6 +103,10 @@ class SpectralSolution:
             raise ValueError(f"`s` must be one of {', '.join(known)}, got {got}.")
         potential = quadratic(self.model)
         return quadrature.density_on(self._expansions[place], grid, potential)
+
+    def to_xarray(self) -> xarray.Dataset:
+        """Labelled Dataset: series over s with errors, and coefficients."""
+        return solution_dataset(self)
 
     @cached_property
     def steady_state(self) -> SpectralSteadyState:

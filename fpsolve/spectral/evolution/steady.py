@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import pairwise
-from typing import Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,9 +14,12 @@ from scipy.linalg import lu_factor, lu_solve
 from fpsolve._support.blas import one_blas_thread
 from fpsolve._support.checks import check_tolerance
 from fpsolve.errors import ToleranceError
+from fpsolve.evolution.call import Call, recorded
+from fpsolve.evolution.saved import Saved
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.model.laydown import LayDownModel
 from fpsolve.spectral.evolution import quadrature
+from fpsolve.spectral.evolution.dataset import steady_dataset
 from fpsolve.spectral.evolution.expansion import Expansion, Limits
 from fpsolve.spectral.evolution.exponential import ForwardOperator
 from fpsolve.spectral.evolution.quadratic import (
@@ -24,6 +27,9 @@ from fpsolve.spectral.evolution.quadratic import (
     checked_tolerance,
     quadratic,
 )
+
+if TYPE_CHECKING:
+    import xarray
 
 __all__ = ["SpectralSteadyState", "spectral_steady_state"]
 
@@ -39,7 +45,7 @@ BYTES = 4 * 8
 
 
 @dataclass(frozen=True, eq=False)
-class SpectralSteadyState:
+class SpectralSteadyState(Saved):
     """A density with L* h = 0, its moments and how well both are known.
 
     Attributes
@@ -55,7 +61,13 @@ class SpectralSteadyState:
         the moments hardly know.
     truncation : (int, int)
         Degree and largest harmonic.
+    call : Call or None
+        How it was made.
+    provenance : dict
+        Versions, environment, date and times.
     """
+
+    kind: ClassVar[str] = "spectral-steady-state"
 
     model: LayDownModel
     moments: dict[str, float]
@@ -64,6 +76,8 @@ class SpectralSteadyState:
     truncation: tuple[int, int]
     _expansion: Expansion
     _coarser: Expansion
+    call: Call | None = None
+    provenance: dict[str, Any] = field(default_factory=dict)
 
     def __repr__(self) -> str:
         mean = f"({self.moments['mean_xi1']:.6g}, {self.moments['mean_xi2']:.6g})"
@@ -95,6 +109,10 @@ class SpectralSteadyState:
             raise ToleranceError(error, tolerance, remedy)
         return p
 
+    def to_xarray(self) -> xarray.Dataset:
+        """Labelled Dataset: moments with errors, and coefficients."""
+        return steady_dataset(self)
+
     def density_error(self, grid: PhaseSpaceGrid) -> float:
         """∫ |p − p′| dξ dα on a grid, p′ from the next coarser truncation."""
         return self._density_and_error(grid)[1]
@@ -109,6 +127,7 @@ class SpectralSteadyState:
         return p, error + ROUNDING
 
 
+@recorded()
 @one_blas_thread()
 def spectral_steady_state(
     model: LayDownModel,

@@ -1,0 +1,205 @@
+"""Results that are mostly numbers: stationary densities, expansions, limit paths."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from fpsolve.evolution.series import long_name
+from fpsolve.pages.blocks import Block, Facts, Notice, Paragraph, Part, Section, Table
+from fpsolve.pages.equations import energy_equations, mathml, potential_equation
+from fpsolve.pages.figures import drawings
+from fpsolve.pages.limit_solutions import limit_equation
+from fpsolve.pages.numbers import evenly
+from fpsolve.pages.origin import provenance_part
+from fpsolve.pages.settings import grid_text, model_facts, model_or_unread, unread_model
+
+if TYPE_CHECKING:
+    from fpsolve.density.stationary.result import SteadyState
+    from fpsolve.reduced.energy.sampling import EnergyPaths
+    from fpsolve.reduced.hydrodynamic.sampling import HydrodynamicPaths
+    from fpsolve.spectral.evolution.solution import SpectralSolution
+    from fpsolve.spectral.evolution.steady import SpectralSteadyState
+
+__all__ = [
+    "energy_paths",
+    "hydrodynamic_paths",
+    "spectral",
+    "spectral_steady_state",
+    "steady_state",
+]
+
+_STATIONARY = "∂ₛp = 0: the density that every start tends to."
+_FIGURES = {
+    "stationary": (
+        "Left: the density over the plane; white: contours of c exp(-B). Right: the "
+        "density of the angle; dashed: uniform.",
+        "Map of the stationary density and curve over the angle",
+    ),
+    "series": (
+        "Relative entropy and means over s, with estimated errors.",
+        "Curves of entropy and means",
+    ),
+    "moments": (
+        "Means and variances of the paths, with standard errors.",
+        "Curves of means and variances",
+    ),
+    "energies": (
+        "Histograms of the signed energy at saved s; dashed: the stationary density.",
+        "Histograms of the energy",
+    ),
+}
+
+
+def steady_state(result: SteadyState, source: str) -> Section:
+    """Return the section of a page about a stationary density."""
+    combined = ", several steps combined" if result.extrapolated else ""
+    items = [
+        *model_facts(result.model),
+        ("grid", grid_text(result.grid)),
+        ("step", f"ds = {result.ds:.4g}{combined}"),
+        ("residual", f"{result.residual:.2g} per unit of s"),
+        ("evolutions", str(result.n_applications)),
+    ]
+    told = ", ".join(f"{name} {size:.1e}" for name, size in result.errors.items())
+    said = f"Estimated L1 error of the density: {result.error:.2g} ({told})."
+    tone = "good" if result.error <= 1e-4 else "warning"
+    moments = _moments(result.moments(), result.moment_errors)
+    return _section("Stationary density", source, result, [
+        Part("Summary", [Notice(said, tone)]),
+        Part("Equation", _stationary(result)),
+        Part("Parameters", [Facts(items)]),
+        Part("Moments", [moments]),
+    ])  # fmt: skip
+
+
+def spectral_steady_state(result: SpectralSteadyState, source: str) -> Section:
+    """Return the section of a page about a stationary expansion."""
+    degree, harmonics = result.truncation
+    items = [
+        *model_facts(result.model),
+        ("truncation", f"degree {degree}, {harmonics} harmonics"),
+        ("residual", f"{result.residual:.2g}"),
+    ]
+    note = Paragraph(
+        "There is no figure: an expansion is a density on whatever grid is chosen, "
+        "`density(grid)`."
+    )
+    return _section("Stationary density by expansion", source, result, [
+        Part("Equation", _stationary(result)),
+        Part("Parameters", [Facts(items)]),
+        Part("Moments", [_moments(result.moments, result.errors), note]),
+    ])  # fmt: skip
+
+
+def spectral(solution: SpectralSolution, source: str) -> Section:
+    """Return the section of a page about an expansion in time."""
+    degree, harmonics = np.max(solution.truncation, axis=0)
+    items = [
+        *model_facts(solution.model),
+        ("arclengths", _span(solution.s)),
+        ("largest truncation", f"degree {degree}, {harmonics} harmonics"),
+        ("tolerance", f"{solution.tolerance:g}"),
+    ]
+    rows = [
+        (f"{solution.s[row]:g}", *(
+            f"{values[row]:.10g} ± {solution.errors[name][row]:.0e}"
+            for name, values in solution.series.items() if name in _SHOWN
+        ))
+        for row in evenly(solution.s.size)
+    ]  # fmt: skip
+    table = Table("Entropy and means with errors.", ("s", *_SHOWN.values()), rows)
+    return _section("Density by expansion in time", source, solution, [
+        Part("Equation", model_or_unread(solution.model, solution.provenance)),
+        Part("Parameters", [Facts(items)]),
+        Part("Numbers", [table]),
+    ])  # fmt: skip
+
+
+_SHOWN = {
+    "relative_entropy": "H", "mean_xi1": "E ξ₁", "mean_xi2": "E ξ₂",
+    "mean_cos_alpha": "E cos α", "mean_sin_alpha": "E sin α",
+}  # fmt: skip
+
+
+def hydrodynamic_paths(paths: HydrodynamicPaths, source: str) -> Section:
+    """Return the section of a page about paths of the limit of much noise."""
+    step = f"ds = {paths.ds:.4g}" if paths.method != "exact" else "exact in s"
+    items = [
+        *model_facts(paths.model),
+        ("paths", str(paths.n_paths)),
+        ("arclengths", _span(paths.s)),
+        ("method", f"{paths.method}, {step}"),
+    ]
+    (mean, mean_error), (spread, spread_error) = paths.mean(), paths.covariance()
+    rows = [
+        (f"{paths.s[row]:g}",
+         *(f"{mean[row, k]:.5g} ± {mean_error[row, k]:.1g}" for k in (0, 1)),
+         *(f"{spread[row, k, k]:.5g} ± {spread_error[row, k, k]:.1g}" for k in (0, 1)))
+        for row in evenly(paths.s.size)
+    ]  # fmt: skip
+    headings = ("s", "E ξ₁", "E ξ₂", "Var ξ₁", "Var ξ₂")
+    table = Table("Means and variances with standard errors.", headings, rows)
+    return _section("Paths of the limit of much noise", source, paths, [
+        Part("Equation", limit_equation(paths.model, paths.provenance)),
+        Part("Parameters", [Facts(items)]),
+        Part("Moments", [table]),
+    ])  # fmt: skip
+
+
+def energy_paths(paths: EnergyPaths, source: str) -> Section:
+    """Return the section of a page about paths of the energy process."""
+    process, n_paths = paths.process, paths.g.shape[1]
+    equations: list[Block] = [*energy_equations()]
+    items = [("paths", str(n_paths)), ("arclengths", _span(paths.s)),
+             ("method", f"{paths.method}, ds = {paths.ds:.4g}"),
+             ("seed", str(paths.seed))]  # fmt: skip
+    if process is None:
+        equations += unread_model(paths.provenance.get("process_description", {}))
+    else:
+        equations.append(potential_equation(process.potential))
+        items = [("potential", f"B = {process.potential.formula}"),
+                 ("noise", f"A = {process.noise:g}"), *items]  # fmt: skip
+    rows = []
+    for row in evenly(paths.s.size):
+        cells = [f"{paths.s[row]:g}"]
+        for values in (paths.g[row], np.abs(paths.g[row])):
+            error = values.std() / np.sqrt(n_paths)
+            cells.append(f"{values.mean():.5g} ± {error:.1g}")
+        rows.append(tuple(cells))
+    table = Table("Means with standard errors.", ("s", "E G", "E |G|"), rows)
+    return _section("Paths of the energy process", source, paths, [
+        Part("Equation", equations),
+        Part("Parameters", [Facts(items)]),
+        Part("Means", [table]),
+    ])  # fmt: skip
+
+
+def _section(title: str, source: str, result: Any, parts: list[Part]) -> Section:
+    figures = Part("Figure", drawings(result, _FIGURES))
+    origin = provenance_part(result.provenance, call=result.call)
+    every = [*parts, figures, origin]
+    return Section(title, source, [part for part in every if part.blocks])
+
+
+def _stationary(result: Any) -> list[Block]:
+    return [
+        *model_or_unread(result.model, result.provenance),
+        mathml(r"\partial_s p = 0", "∂ₛp = 0"),
+        Paragraph(_STATIONARY),
+    ]
+
+
+def _moments(moments: Mapping[str, float], errors: Mapping[str, float]) -> Table:
+    rows = [
+        (long_name(name), f"{value:.10g}", f"{errors.get(name, np.nan):.1e}")
+        for name, value in moments.items()
+    ]
+    return Table("Moments and their estimated errors.", ("moment", "value", "error"),
+                 rows, words=frozenset({0}))  # fmt: skip
+
+
+def _span(s: Any) -> str:
+    return f"{s.size}, from {s[0]:g} to {s[-1]:g}" if s.size else "none"
