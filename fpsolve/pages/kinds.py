@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from fpsolve.pages.blocks import Section
+
 __all__ = ["PAGES"]
 
 # By the kind of a result "module:name" of a function of it and of the name of its
-# file, which returns a Section. Loaded only when it is asked for.
-PAGES = {
+# file, which returns a Section, or the function. Loaded only when it is asked for.
+PAGES: dict[str, str | Callable[[Any, str], Section]] = {
     "solution": "fpsolve.pages.solution:section",
     "paths": "fpsolve.pages.paths:section",
     "hydrodynamic": "fpsolve.pages.limit_solutions:hydrodynamic_section",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -24,7 +25,7 @@ class Kind:
     words : str
         In the plural, as messages call it.
     function : str
-        "module:name" of the public function that makes one.
+        "module:name" of the public function that makes one, or the function itself.
     reading : str
         "module:name" of what makes the result from its dataset; empty for a study,
         which is a dataset.
@@ -38,8 +39,8 @@ class Kind:
     """
 
     words: str
-    function: str
-    reading: str = ""
+    function: str | Callable[..., Any]
+    reading: str | Callable[..., Any] = ""
     repeating: str = ""
     counts: str = ""
     variables: tuple[str, ...] = ()
@@ -146,8 +147,10 @@ KINDS = {
 }  # fmt: skip
 
 
-def named(place: str) -> Any:
-    """Return what "module:name" names."""
+def named(place: str | Callable[..., Any]) -> Any:
+    """Return what "module:name" names; a function as it is."""
+    if not isinstance(place, str):
+        return place
     module, _, name = place.partition(":")
     return getattr(importlib.import_module(module), name)
 

@@ -24,7 +24,7 @@ _NOTES = ("command", "configuration")
 def repeat_call(result: Any, overrides: dict[str, Any]) -> Any:
     """Call the function of a result as it was called, with the overrides."""
     place = KINDS[kind_of(result)].function
-    name = place.partition(":")[2]
+    name = place.partition(":")[2] if isinstance(place, str) else place.__qualname__
     is_study = hasattr(result, "data_vars")
     call = Call.from_xarray(result) if is_study else result.call
     if call is None:
@@ -42,13 +42,15 @@ def repeat_call(result: Any, overrides: dict[str, Any]) -> Any:
     return _noted(result, again)
 
 
-def _called(place: str, arguments: dict[str, Any], given: Mapping[str, Any]) -> Any:
+def _called(
+    place: str | Callable[..., Any], arguments: dict[str, Any], given: Mapping[str, Any]
+) -> Any:
     """The value of a function, or of a method of an object made for it."""
-    module, _, name = place.partition(":")
-    owner, _, method = name.rpartition(".")
-    if not owner:
+    if not isinstance(place, str) or "." not in place.partition(":")[2]:
         function = named(place)
         return function(**_known(function, arguments, given))
+    module, _, name = place.partition(":")
+    owner, _, method = name.rpartition(".")
     kind = named(f"{module}:{owner}")
     own = inspect.signature(kind).parameters
     made = kind(**{name: arguments.pop(name) for name in own if name in arguments})
