@@ -7,6 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from fpsolve._support.checks import shown
 from fpsolve._support.declared import declared
 from fpsolve._support.labels import FORMAT, check_complete
 
@@ -173,7 +174,7 @@ def kind_of(result: Any) -> str:
     if not (isinstance(kind, str) and kind in KINDS):
         raise TypeError(
             "`result` must be a result of fpsolve (a solution, paths, a spectrum, a "
-            f"check or a study), got {type(result).__name__}."
+            f"check or a study), got {shown(result)}."
         )
     return kind
 

@@ -378,7 +378,7 @@ def test_wrong_arguments_are_named(tmp_path):
     page = tmp_path / "page.html"
     with pytest.raises(ValueError, match="`results` must name at least one result"):
         fp.report([], page)
-    with pytest.raises(TypeError, match=r"`result` must be a result .* got int"):
+    with pytest.raises(TypeError, match=r"`result` must be a result .* got 3"):
         fp.report([3], page)
     with pytest.raises(FileNotFoundError, match="`path` must exist to be read"):
         fp.report(tmp_path / "missing.nc", page)

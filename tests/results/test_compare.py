@@ -46,12 +46,6 @@ def test_dates_and_times_are_no_results(solution):
     assert not comparison.parameters
 
 
-@pytest.mark.parametrize("suffix", [".nc", ".zarr"])
-def test_a_file_equals_what_was_written_to_it(solution, tmp_path, suffix):
-    solution.save(tmp_path / f"a{suffix}")
-    assert fp.compare(tmp_path / f"a{suffix}", solution).equal
-
-
 def test_one_moved_cell_is_found_with_its_place_and_size(solution):
     comparison = fp.compare(solution, moved(solution, 1e-3))
     assert not comparison.equal

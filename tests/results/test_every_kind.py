@@ -11,6 +11,7 @@ import xarray as xr
 
 import fpsolve as fp
 from fpsolve import plotting, studies
+from fpsolve._support.declared import declared
 from fpsolve._support.netcdf import write_dataset
 from fpsolve.errors import NotRepeatableError
 from fpsolve.pages.kinds import PAGES
@@ -141,6 +142,18 @@ def test_a_result_says_its_kind_and_equals_itself(name):
     comparison = fp.compare(result(name), result(name))
     assert comparison.equal
     assert not comparison.parameters
+
+
+@pytest.mark.parametrize("name", MAKERS)
+def test_a_result_says_versions_and_machine(name):
+    about = declared(as_dataset(result(name)).attrs)
+    origin = {**about.get("provenance", {}), **about}
+    assert origin["versions"]["fpsolve"]
+    assert origin["environment"]["packages"]
+
+
+def as_dataset(found):
+    return found if isinstance(found, xr.Dataset) else found.to_xarray()
 
 
 @pytest.mark.parametrize("ending", ["nc", "zarr"])

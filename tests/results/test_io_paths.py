@@ -287,13 +287,6 @@ def test_what_a_file_holds_decides_what_is_loaded(paths, tmp_path):
     assert isinstance(fp.load(tmp_path / "result.nc"), fp.Paths)
 
 
-def test_an_older_file_that_does_not_say_what_it_holds_is_a_solution(tmp_path):
-    dataset = relaxing_solution(errors=False).to_xarray()
-    assert dataset.attrs.pop("fpsolve_kind") == "solution"
-    dataset.to_netcdf(tmp_path / "old.nc", engine="h5netcdf")
-    assert isinstance(fp.load(tmp_path / "old.nc"), fp.Solution)
-
-
 def test_a_kind_from_the_future_is_refused(paths, tmp_path):
     dataset = paths.to_xarray().assign_attrs(fpsolve_kind="web")
     dataset.to_netcdf(tmp_path / "web.nc", engine="h5netcdf")

@@ -1,6 +1,5 @@
 """Every result can be computed again from its file, to the last bit."""
 
-import json
 from dataclasses import replace
 
 import numpy as np
@@ -89,25 +88,9 @@ RESULTS = {
     "energy, point": lambda: energy(0.2, extrapolate=True),
     "energy, density": lambda: energy(lambda g: 1 + g),
     "energy, masses": lambda: energy(np.arange(20.0)),
-    "averages": lambda: studies.ergodic_averages(
-        QUADRATIC, [1.0], s_end=2.0, n_paths=40, seed=1
-    ),
     "rates": lambda: studies.rate_versus_noise(
         QUADRATIC, [2.0], quick=True, parts=["gap"], workers=0
     ),
-    "large noise": lambda: studies.large_noise_limit(
-        QUADRATIC, [1.4], quick=True, parts=["gap"], workers=0
-    ),
-    "small noise": lambda: studies.small_noise_limit(
-        QUADRATIC,
-        [0.8],
-        belt_speed_scales=[0.0],
-        slow_length=0.25,
-        n_paths=50,
-        quick=True,
-    ),
-    "small noise, spectrum": lambda: studies.small_noise_spectrum(QUADRATIC, [0.8]),
-    "energy tables": lambda: tables_dataset(ENERGY, 3, 2),
     "check": lambda: checked(START_ON_FINER, scheme=fp.drift_kick(MODEL, FINER)),
     "check, law": lambda: checked(GaussianLaw((0.5, 0.0), 0.8, 1.0, 1.0)),
 }
@@ -149,15 +132,6 @@ def test_arguments_can_be_changed(tmp_path):
     assert fp.rerun(energy(0.2), ds=0.25).ds == 0.25
     study = RESULTS["rates"]()
     assert fp.rerun(study, noises=[3.0], workers=0)["noise"].item() == 3.0
-
-
-def test_limits_come_back_from_their_files(tmp_path):
-    for result in (hydrodynamic(extrapolate=True), energy(0.2, extrapolate=True)):
-        for suffix in (".nc", ".zarr"):
-            loaded = fp.load(result.save(tmp_path / f"result{suffix}"))
-            assert type(loaded) is type(result)
-            assert fp.compare(result, loaded).equal
-            assert loaded.provenance == result.provenance
 
 
 def stopped_at(step):
@@ -418,10 +392,3 @@ def test_mistakes_of_the_command_are_one_line(fpsolve, tmp_path):
     message = "`--out` must not be the folder of the file, got `.`; the result"
     assert_mistake(fpsolve("rerun", "old.nc", "--out", "."), message)
     assert files(tmp_path) == ["old.nc"]
-
-
-def test_environment_and_versions_are_in_every_study():
-    for name in ("rates", "large noise", "energy tables", "averages"):
-        attributes = RESULTS[name]().attrs
-        assert json.loads(attributes["environment"])["packages"]
-        assert json.loads(attributes["versions"])["fpsolve"]

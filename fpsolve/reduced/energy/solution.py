@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve._support.netcdf import write_dataset
+from fpsolve.evolution.saved import Saved
 from fpsolve.evolution.schedule import saved_index
 from fpsolve.reduced.energy.dataset import to_xarray
 from fpsolve.reduced.energy.grid import EnergyGrid
@@ -24,7 +23,7 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class EnergySolution:
+class EnergySolution(Saved):
     """Densities p(g, s) of (16) that were saved, and series over every recorded step.
 
     Attributes
@@ -104,10 +103,6 @@ class EnergySolution:
     def to_xarray(self) -> xarray.Dataset:
         """Labelled Dataset: density (s, g), series over step, parameters."""
         return to_xarray(self)
-
-    def save(self, path: str | Path, engine: str | None = None) -> Path:
-        """Write the solution to netCDF, or to zarr for a path that ends in .zarr."""
-        return write_dataset(self.to_xarray(), path, engine)
 
     def __repr__(self) -> str:
         return (

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
@@ -14,8 +13,8 @@ from numpy.typing import NDArray
 
 from fpsolve._support.blas import one_blas_thread
 from fpsolve._support.checks import check_integer, check_positive, check_real, shown
-from fpsolve._support.netcdf import write_dataset
 from fpsolve.evolution.call import Call, recorded
+from fpsolve.evolution.saved import Saved
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.model.laydown import LayDownModel
 from fpsolve.model.potentials.quadratic import QuadraticPotential
@@ -44,7 +43,7 @@ MOST = 1000
 
 
 @dataclass(frozen=True, eq=False)
-class Spectrum:
+class Spectrum(Saved):
     """The slowest modes of the generator L, without the 0 of the constants.
 
     Attributes
@@ -136,10 +135,6 @@ class Spectrum:
     def to_xarray(self) -> xarray.Dataset:
         """Labelled Dataset: eigenvalues with errors over `index`, slowest first."""
         return spectrum_dataset(self)
-
-    def save(self, path: str | Path, engine: str | None = None) -> Path:
-        """Write the spectrum to netCDF, or to zarr for a path that ends in .zarr."""
-        return write_dataset(self.to_xarray(), path, engine)
 
     @property
     def _basis(self) -> Discretisation:

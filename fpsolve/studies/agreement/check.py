@@ -5,14 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve._support.netcdf import write_dataset
 from fpsolve.evolution.call import Call
+from fpsolve.evolution.saved import Saved
 from fpsolve.evolution.schedule import index_of
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.model.laydown import LayDownModel
@@ -29,7 +28,7 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class CrossCheck:
+class CrossCheck(Saved):
     """Whether a density and an ensemble of paths agree, in numbers and in words.
 
     ``print(check)`` says whether they agree, how likely a false alarm was, and how
@@ -152,10 +151,6 @@ class CrossCheck:
     def to_xarray(self) -> xarray.Dataset:
         """Labelled Dataset: every number of the tests (s, test), marginals (s, ...)."""
         return to_xarray(self)
-
-    def save(self, path: str | Path, engine: str | None = None) -> Path:
-        """Write the check to netCDF, or to zarr for a path that ends in .zarr."""
-        return write_dataset(self.to_xarray(), path, engine)
 
 
 def _known(value: Any) -> Any:

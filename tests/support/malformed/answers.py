@@ -98,7 +98,7 @@ FIGURES = [
     Case("movie of an unknown kind", lambda: plotting.movie(at.solution(), "film.txt"),
          "got `film.txt`", "must end in .gif"),
     Case("figures of no result", lambda: plotting.save_figures("result.nc", "figures"),
-         "got 'result.nc'", "must be a Solution", TypeError),
+         "got 'result.nc'", "must be a result of fpsolve", TypeError),
     Case("figures into a number", lambda: plotting.save_figures(at.solution(), 3),
          "got 3", "name of a file", TypeError),
     Case("figures into a file",
