@@ -217,7 +217,7 @@ def describe_scheme(scheme: Scheme) -> dict[str, Any]:
     }
 
 
-def described_scheme(scheme: Any) -> Any:
+def described_scheme(scheme: Any, arguments: Any = None) -> Any:
     """Return what a call says of a scheme; of a model in its place, the model."""
     if scheme is None or isinstance(scheme, LayDownModel):
         return scheme

@@ -27,7 +27,16 @@ from fpsolve.model.potentials.potential import Potential
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["ARRAY", "CALL", "USER_CODE", "WHERE", "Call", "described", "recorded"]
+__all__ = [
+    "ARRAY",
+    "CALL",
+    "USER_CODE",
+    "WHERE",
+    "Call",
+    "Kept",
+    "described",
+    "recorded",
+]
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 Arrays = dict[str, NDArray[Any]]
@@ -93,10 +102,11 @@ class Call:
                 f"`{CALL}` must name a function and its arguments, got "
                 f"{shown(content)}."
             )
+        named = set(_variables(content["arguments"]))
         arrays = {
             str(name): variable.to_numpy()
             for name, variable in dataset.data_vars.items()
-            if str(name).startswith("argument_")
+            if name in named
         }
         return cls(content["function"], content["arguments"], arrays)
 
@@ -110,8 +120,23 @@ class Call:
                 labels(f"{name.replace('_', ' ')} of {self.function}"),
             )
             for name, values in self.arrays.items()
+            if name not in dataset
         }
         return dataset.assign(variables).assign_attrs({CALL: to_json(about)})
+
+
+@dataclass(frozen=True, eq=False)
+class Kept:
+    """An argument that the dataset holds in a variable of its own.
+
+    Attributes
+    ----------
+    variable : str
+    values : ndarray
+    """
+
+    variable: str
+    values: NDArray[Any]
 
 
 def described(value: Any, name: str, arrays: Arrays) -> Any:
@@ -129,8 +154,8 @@ def described(value: Any, name: str, arrays: Arrays) -> Any:
     """
     own = vars(type(value)).get("_recorded")
     if own is not None:
-        parts = getattr(value, "_recorded_parts", value.to_dict)()
-        return {f"${own}": described(parts, name, arrays)}
+        parts = getattr(value, "_recorded_parts", None) or value.to_dict
+        return {f"${own}": described(parts(), name, arrays)}
     if isinstance(value, Potential):
         return {"$potential": potential_to_dict(value)}
     if isinstance(value, LayDownModel):
@@ -148,6 +173,9 @@ def described(value: Any, name: str, arrays: Arrays) -> Any:
         }
     if isinstance(value, list | tuple):
         return _series(value, name, arrays)
+    if isinstance(value, Kept):
+        arrays[value.variable] = value.values
+        return {ARRAY: value.variable, IDENTITY: digest_of(value.values)}
     if isinstance(value, np.ndarray) and value.dtype.kind in "biuf":
         return _array(value, name, arrays)
     if isinstance(value, np.generic):
@@ -175,9 +203,17 @@ def _array(value: NDArray[Any], name: str, arrays: Arrays) -> Any:
     return {ARRAY: variable, IDENTITY: digest_of(value)}
 
 
-def recorded(
-    kind: str = "", **describers: Callable[[Any], Any]
-) -> Callable[[Function], Function]:
+def _variables(told: Any) -> Iterator[Any]:
+    """Names of the variables that hold arrays of a call."""
+    if isinstance(told, dict):
+        if ARRAY in told:
+            yield told[ARRAY]
+        told = list(told.values())
+    for part in told if isinstance(told, list) else ():
+        yield from _variables(part)
+
+
+def recorded(**describers: Callable[[Any, Any], Any]) -> Callable[[Function], Function]:
     """Decorate a public function so that its result says how it was called.
 
     A dataclass gets `call`, and `provenance` if it has none; a dataset gets the
@@ -185,15 +221,14 @@ def recorded(
 
     Parameters
     ----------
-    kind : str
-        Another name than that of the function.
     **describers : callable
-        For an argument of that name what is described in its place.
+        For an argument of that name a function of it, and of all by name, that returns
+        what is described in its place.
     """
 
     def decorate(function: Function) -> Function:
         signature = inspect.signature(function)
-        name = kind or function.__qualname__
+        name = function.__qualname__
 
         @functools.wraps(function)
         def called(*args: Any, **options: Any) -> Any:
@@ -225,11 +260,11 @@ def recorded(
 
 
 def _arguments(
-    bound: Mapping[str, Any], describers: Mapping[str, Callable[[Any], Any]]
+    bound: Mapping[str, Any], describers: Mapping[str, Callable[[Any, Any], Any]]
 ) -> dict[str, Any]:
     """What was given by name; for an object what it is made of."""
     arguments = {
-        name: describers[name](value) if name in describers else value
+        name: describers[name](value, bound) if name in describers else value
         for name, value in bound.items()
         if name != "self"
     }

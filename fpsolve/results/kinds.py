@@ -65,14 +65,12 @@ KINDS = {
     "hydrodynamic": Kind(
         "solutions of the hydrodynamic limit",
         "fpsolve.reduced.hydrodynamic.limit:HydrodynamicLimit.solve",
-        "fpsolve.reduced.hydrodynamic.reading:from_xarray",
-        "fpsolve.results.rerun.limits:repeat_hydrodynamic", counts="steps",
+        "fpsolve.reduced.hydrodynamic.reading:from_xarray", counts="steps",
     ),
     "energy": Kind(
         "solutions of the energy process",
         "fpsolve.reduced.energy.process:EnergyProcess.solve",
-        "fpsolve.reduced.energy.reading:from_xarray",
-        "fpsolve.results.rerun.limits:repeat_energy", counts="steps",
+        "fpsolve.reduced.energy.reading:from_xarray", counts="steps",
     ),
     "steady-state": Kind(
         "stationary densities", "fpsolve.density.steady_state:steady_state",

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from fpsolve._support.labels import labels, marked, origin, to_json
+from fpsolve._support.labels import labels, origin, to_json
+from fpsolve.evolution.saved import described_as
 from fpsolve.model.potentials.dictionaries import potential_to_dict
 
 if TYPE_CHECKING:
@@ -68,7 +69,7 @@ def to_xarray(solution: Any) -> xr.Dataset:
         "ds": solution.ds,
         "status": solution.status,
     }
-    return marked(xr.Dataset(variables, coordinates, attributes), "energy")
+    return described_as(xr.Dataset(variables, coordinates, attributes), solution)
 
 
 def process_attributes(process: Any, provenance: Any) -> dict[str, Any]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -60,6 +60,12 @@ class EnergyGrid:
             )
         self.averages: Any = averages
         self.n_cells, self.signed = n_cells, signed
+
+    _recorded: ClassVar[str] = "energy_grid"
+
+    def _recorded_parts(self) -> dict[str, Any]:
+        # The process whose cells they are is another argument.
+        return {"n_cells": self.n_cells, "signed": self.signed}
 
     @classmethod
     def of_cells(

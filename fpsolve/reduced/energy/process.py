@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,7 +14,7 @@ from fpsolve._support.checks import check_flag
 from fpsolve._support.progress import ProgressCallback, reporting
 from fpsolve._support.provenance import Stopwatch
 from fpsolve.errors import RunInterrupted
-from fpsolve.evolution.call import recorded
+from fpsolve.evolution.call import Kept, recorded
 from fpsolve.evolution.schedule import checked_stops, make_schedule
 from fpsolve.reduced.energy.coefficients import Coefficients
 from fpsolve.reduced.energy.grid import EnergyGrid
@@ -29,6 +30,11 @@ __all__ = ["EnergyProcess"]
 Array = NDArray[np.float64]
 
 _SERIES = ("s", "mass", "relative_entropy", "entropy_dissipation", "minimum")
+
+
+def _described_start(start: Any, arguments: Mapping[str, Any]) -> Kept:
+    """The masses of the start in the cells, which a solution holds."""
+    return Kept("initial_mass", masses_of(start, arguments["grid"]))
 
 
 class EnergyProcess(Coefficients):
@@ -105,6 +111,7 @@ class EnergyProcess(Coefficients):
         """Cells of |G| on [0, g_max], or of signed G, for `solve`; see `EnergyGrid`."""
         return EnergyGrid(self._averages, n_cells, signed)
 
+    @recorded(start=_described_start)
     @one_blas_thread()
     def solve(
         self,
@@ -172,10 +179,6 @@ class EnergyProcess(Coefficients):
         masses = starting_masses(start, grid)
         generator = grid.generator(self.noise)
         arguments = (generator, masses, grid.equilibrium, schedule)
-        run = {
-            "s_span": [float(s) for s in s_span], "ds": float(ds), "save_at": save_at,
-            "method": method, "extrapolate": extrapolate, "record_every": record_every,
-        }  # fmt: skip
         watch = Stopwatch()
 
         def solution(
@@ -185,7 +188,7 @@ class EnergyProcess(Coefficients):
         ) -> EnergySolution:
             series = {name: getattr(found, name) for name in _SERIES}
             n_steps = schedule.n_steps * (3 if extrapolate else 1)
-            provenance = {**watch.provenance(n_steps), "run": run}
+            provenance = watch.provenance(n_steps)
             return EnergySolution(
                 self, grid, method, schedule.ds, series, errors, found.saved_s,
                 found.saved, provenance, start, status,

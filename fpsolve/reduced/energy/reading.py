@@ -13,6 +13,7 @@ from fpsolve._support.labels import (
     read_provenance,
     to_json,
 )
+from fpsolve.evolution.call import Call
 from fpsolve.evolution.layout import check_counts, check_dimensions, check_run
 from fpsolve.evolution.series import read_errors
 from fpsolve.model.potentials.dictionaries import potential_from_dict
@@ -78,6 +79,7 @@ def from_xarray(dataset: xr.Dataset) -> EnergySolution:
             dataset["initial_mass"].values if "initial_mass" in dataset else None
         ),
         status=about["status"],
+        call=Call.from_xarray(dataset),
     )
 
 

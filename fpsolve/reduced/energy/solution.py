@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from fpsolve.evolution.call import Call
 from fpsolve.evolution.saved import Saved
 from fpsolve.evolution.schedule import saved_index
 from fpsolve.reduced.energy.dataset import to_xarray
@@ -42,11 +43,13 @@ class EnergySolution(Saved):
     masses : ndarray, shape (n_saved, n)
         Masses of the n cells.
     provenance : dict
-        Versions, date, times, number of steps; `run` holds the arguments of `solve`.
+        Versions, date, times, number of steps.
     initial_masses : ndarray, shape (n,), or None
         Masses of the start as they were given, of any sum.
     status : str
         "finished" or "interrupted".
+    call : Call or None
+        How it was called.
     """
 
     kind: ClassVar[str] = "energy"
@@ -62,6 +65,7 @@ class EnergySolution(Saved):
     provenance: dict[str, Any] = field(default_factory=dict)
     initial_masses: Array | None = None
     status: str = "finished"
+    call: Call | None = None
 
     @property
     def s(self) -> Array:

@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fpsolve._support.labels import labels, marked, origin, to_json
+from fpsolve._support.labels import labels, origin, to_json
+from fpsolve.evolution.saved import described_as
 from fpsolve.evolution.series import COORDINATES, long_name
 from fpsolve.model.stored import describe_model
 
@@ -65,7 +66,7 @@ def to_xarray(solution: Any) -> xr.Dataset:
         },
         attrs=_attributes(solution),
     )
-    return marked(dataset, "hydrodynamic")
+    return described_as(dataset, solution)
 
 
 def _attributes(solution: Any) -> dict[str, Any]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 import numpy as np
@@ -12,7 +12,7 @@ from fpsolve._support.blas import one_blas_thread
 from fpsolve._support.checks import check_flag, check_tolerance
 from fpsolve._support.progress import ProgressCallback
 from fpsolve.errors import DomainTooSmallError
-from fpsolve.evolution.call import recorded
+from fpsolve.evolution.call import Kept, recorded
 from fpsolve.evolution.schedule import checked_stops
 from fpsolve.grids import diagnostics
 from fpsolve.grids.phase_space import PhaseSpaceGrid
@@ -34,6 +34,12 @@ __all__ = ["HydrodynamicLimit"]
 Array = NDArray[np.float64]
 Start = ArrayLike | Callable[..., ArrayLike]
 ROUNDING = 1e-15
+
+
+def _described_start(P0: Any, arguments: Mapping[str, Any]) -> Kept:
+    """The density of the start on the grid, which a solution holds."""
+    density = run.checked_start(P0, plane_of(arguments["grid"]))
+    return Kept("initial_density", density)
 
 
 class HydrodynamicLimit(LimitEquation):
@@ -107,6 +113,7 @@ class HydrodynamicLimit(LimitEquation):
         )
         return 2.0 * abs(1.0 - finer) + 2.0 * abs(here - finer) + ROUNDING
 
+    @recorded(P0=_described_start)
     @one_blas_thread()
     def solve(
         self,

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from fpsolve._support.declared import declared
 from fpsolve._support.labels import check_complete
+from fpsolve.evolution.call import Call
 from fpsolve.evolution.layout import check_plane_layout
 from fpsolve.evolution.series import read_errors, read_series
 from fpsolve.grids.plane import PlaneGrid
@@ -58,4 +59,5 @@ def from_xarray(dataset: xr.Dataset) -> HydrodynamicSolution:
         provenance=provenance,
         initial_density=start,
         status=attributes["status"],
+        call=Call.from_xarray(dataset),
     )

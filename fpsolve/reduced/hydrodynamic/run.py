@@ -40,18 +40,6 @@ class Arguments:
     record_every: int
     boundary_tolerance: float
 
-    def to_dict(self) -> dict[str, Any]:
-        """All but the start, as JSON can hold them."""
-        return {
-            "s_span": [float(s) for s in self.s_span],
-            "ds": float(self.ds),
-            "method": self.method,
-            "save_at": None if self.save_at is None else list(map(float, self.save_at)),
-            "extrapolate": self.extrapolate,
-            "record_every": int(self.record_every),
-            "boundary_tolerance": float(self.boundary_tolerance),
-        }
-
 
 def checked_start(given: Any, plane: PlaneGrid) -> Array:
     """The density at the start on the grid, finite and with mass."""
@@ -100,7 +88,7 @@ def solve(
             saved_s=relaxation.saved_s,
             densities=relaxation.saved.reshape(-1, *plane.shape) / plane.cell_area,
             errors=None if errors is None else errors_of(relaxation, errors),
-            provenance={**watch.provenance(n_steps), "run": arguments.to_dict()},
+            provenance=watch.provenance(n_steps),
             initial_density=arguments.start,
             status=status,
         )

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fpsolve._support.netcdf import write_dataset
+from fpsolve.evolution.call import Call
 from fpsolve.evolution.decay import DecayRate, fit_decay
 from fpsolve.evolution.schedule import saved_index
 from fpsolve.grids.plane import PlaneGrid
@@ -84,11 +85,13 @@ class HydrodynamicSolution:
         Richardson estimates in ds: "density_l1" (n_saved,) and one array for each
         series that depends on ds. The error of the grid comes in addition.
     provenance : dict
-        Versions, date, times, number of steps; `run` holds the arguments of `solve`.
+        Versions, date, times, number of steps.
     initial_density : ndarray, shape (n1, n2), or None
         𝒫0, from which the run began.
     status : str
         "finished", "interrupted" or "failed".
+    call : Call or None
+        How it was called.
     """
 
     kind: ClassVar[str] = "hydrodynamic"
@@ -104,6 +107,7 @@ class HydrodynamicSolution:
     provenance: dict[str, Any] = field(default_factory=dict)
     initial_density: Array | None = None
     status: str = "finished"
+    call: Call | None = None
 
     def __getattr__(self, name: str) -> Array:
         # Only called for names that are not fields; guards against half-built

@@ -38,13 +38,16 @@ def differing_environment(
 def _parameters(attributes: Mapping[str, Any]) -> dict[str, Any]:
     flat: dict[str, Any] = {}
     about = {**attributes, **declared(attributes)}
+    call = about.pop("call", {})
     for name, value in about.items():
         if name not in _ORIGIN and not name.endswith("_version"):
             flat.update(_flattened(str(name), value))
     run = about.get("provenance", {}).get("run", {})
     # What is an attribute of its own need not be named twice.
-    own = {key: value for key, value in run.items() if key not in attributes}
-    return {**flat, **dict(_flattened("run", own))}
+    for told, arguments in (("run", run), ("call", call.get("arguments", {}))):
+        own = {key: one for key, one in arguments.items() if key not in attributes}
+        flat.update(_flattened(told, own))
+    return flat
 
 
 def _environment(attributes: Mapping[str, Any]) -> dict[str, Any]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -18,7 +19,21 @@ from fpsolve.paths.laws import DensityLaw
 from fpsolve.results.rerun.missing import own_code
 from fpsolve.spectral.bases.sectors import Sector
 
-__all__ = ["READERS", "arguments_of"]
+__all__ = ["READERS", "OfOwner", "arguments_of"]
+
+
+@dataclass(frozen=True)
+class OfOwner:
+    """An argument that the object makes whose method is called.
+
+    Attributes
+    ----------
+    method : str
+    options : dict
+    """
+
+    method: str
+    options: Mapping[str, Any]
 
 
 def _seed(about: Mapping[str, Any]) -> np.random.SeedSequence:
@@ -41,6 +56,7 @@ READERS: dict[str, Callable[[Any], Any]] = {
     "$sector": lambda about: Sector(**about),
     "$scheme": _scheme,
     "$seed": _seed,
+    "$energy_grid": lambda about: OfOwner("grid", about),
     "$tuple": tuple,
 }
 

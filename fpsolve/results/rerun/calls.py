@@ -11,7 +11,7 @@ from fpsolve._support.checks import shown
 from fpsolve.errors import NotRepeatableError
 from fpsolve.evolution.call import WHERE, Call
 from fpsolve.results.kinds import KINDS, kind_of, named
-from fpsolve.results.rerun.arguments import arguments_of
+from fpsolve.results.rerun.arguments import OfOwner, arguments_of
 from fpsolve.results.rerun.costs import check_call
 from fpsolve.results.rerun.missing import unrecorded
 
@@ -55,7 +55,11 @@ def _called(
     own = inspect.signature(kind).parameters
     made = kind(**{name: arguments.pop(name) for name in own if name in arguments})
     function = getattr(made, method)
-    return function(**_known(function, arguments, given))
+    return function(**{
+        name: getattr(made, one.method)(**one.options) if isinstance(one, OfOwner)
+        else one
+        for name, one in _known(function, arguments, given).items()
+    })  # fmt: skip
 
 
 def _known(

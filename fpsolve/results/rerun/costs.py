@@ -6,6 +6,7 @@ for decides sizes that the file has, too; where both differ it is refused.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Collection, Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
@@ -43,8 +44,8 @@ def check_run(result: Any, run: Mapping[str, Any], given: Collection[str]) -> No
     if any(name in given for name in _DECISIVE):
         return
     span, ds = run.get("s_span", ()), run.get("ds", 0.0)
-    if len(span) != 2 or not (0 < ds < np.inf and np.isfinite(span).all()):
-        raise _refused("`s_span` and `ds`", f"{span} and {ds:g}", "two numbers, a step")
+    if not (_are_numbers(*_listed(span), ds) and len(span) == 2 and ds > 0):
+        raise _refused("`s_span` and `ds`", f"{span} and {ds}", "two numbers, a step")
     n_steps = abs(span[1] - span[0]) / ds
     passes = 3 if run.get("extrapolate") else 1
     _check_time(n_steps * passes, result.grid.n_cells, "steps of all cells")
@@ -84,6 +85,8 @@ def check_call(
     given : collection of str
         Names of arguments that the caller chose instead.
     """
+    if function in _RUNS:
+        check_run(result, arguments, given)
     read = _HELD.get(function)
     if read is None:
         return
@@ -108,12 +111,23 @@ def _check_time(n_steps: float, n_each: int, what: str) -> None:
         )
 
 
+def _listed(value: Any) -> tuple[Any, ...]:
+    return tuple(value) if isinstance(value, list | tuple) else (value,)
+
+
+def _are_numbers(*values: Any) -> bool:
+    """Whether all are finite numbers; what is in a file may be anything."""
+    return all(isinstance(one, int | float) and math.isfinite(one) for one in values)
+
+
 def _check_records(
     result: Any, run: Mapping[str, Any], n_steps: float, finished: bool
 ) -> None:
     s = result.series["s"]
-    saves = run.get("save_at") or ()
-    fewest = n_steps / max(run.get("record_every", 1), 1)
+    saves, every = _listed(run.get("save_at") or ()), run.get("record_every", 1)
+    if not _are_numbers(every):
+        raise _refused("`record_every`", str(every), "a number")
+    fewest = n_steps / max(every, 1)
     held = s.size - 1
     if not held <= fewest + len(saves) + 1 or (finished and not fewest <= held + 1):
         raise _refused("`record_every`", f"{fewest + 1:.6g} records", f"{s.size}")
@@ -194,6 +208,8 @@ def _of_tables(dataset: xr.Dataset, about: Mapping[str, Any]) -> Held:
     yield "noise", about.get("noise")
 
 
+# Functions that step, of which the series show how often.
+_RUNS = ("HydrodynamicLimit.solve", "EnergyProcess.solve")
 # Of every function what its dataset holds of its arguments.
 _HELD: dict[str, Callable[[Any, Mapping[str, Any]], Held]] = {
     "rate_versus_noise": _of_rates,
