@@ -1,6 +1,7 @@
 """The contract of a result: every kind is saved, loaded, compared, drawn, repeated."""
 
 import importlib
+from dataclasses import replace
 from functools import cache
 from operator import attrgetter
 
@@ -14,6 +15,7 @@ from fpsolve import plotting, studies
 from fpsolve._support.declared import declared
 from fpsolve._support.netcdf import write_dataset
 from fpsolve.errors import NotRepeatableError
+from fpsolve.pages.blocks import Figure
 from fpsolve.pages.kinds import PAGES
 from fpsolve.pages.page import report_text
 from fpsolve.plotting.files import possible_figures
@@ -181,8 +183,22 @@ def test_a_result_is_repeated_from_its_file_to_the_last_bit(name, tmp_path):
     assert not comparison.parameters
 
 
+# Where they take the most time; here only that there are as many as allowed.
+DRAWN_IN_TEST_REPORT = {"solution", "paths", "check", "spectrum", "rate", "large-noise",
+                        "small-noise", "energy-tables"}  # fmt: skip
+
+
+def undrawn(draw, caption, alt):
+    return Figure("data:,", 100, caption, alt)
+
+
 @pytest.mark.parametrize("name", MAKERS)
-def test_a_result_is_told_with_figures_and_where_it_comes_from(name, tmp_path):
+def test_a_result_is_told_with_figures_and_where_it_comes_from(
+    name, tmp_path, monkeypatch
+):
+    if name.partition(",")[0] in DRAWN_IN_TEST_REPORT:
+        for module in ("solution", "paths", "figures"):
+            monkeypatch.setattr(f"fpsolve.pages.{module}.embedded", undrawn)
     path = saved(result(name), tmp_path / "result.nc")
     page = report_text(path)
     assert "result.nc" in page
@@ -287,6 +303,25 @@ def test_a_start_of_ones_own_is_named_when_paths_of_a_limit_are_repeated(tmp_pat
     )
     with pytest.raises(NotRepeatableError, match="`initial` was your own code"):
         fp.rerun(paths.save(tmp_path / "own.nc"))
+
+
+@pytest.mark.parametrize(
+    ("changes", "reason"),
+    [
+        ({"s_span": "x"}, "`s_span` and `ds` would give x and 0.25"),
+        ({"ds": [1]}, "`s_span` and `ds` would give"),
+        ({"record_every": "x"}, "`record_every` would give x"),
+        ({"ds": 0.125}, "`record_every` would give 9 records, and it holds 5"),
+        ({"s_span": [0.0, 1e15], "record_every": 2**50}, "days at the very least"),
+    ],
+)
+@pytest.mark.parametrize("name", ["hydrodynamic", "energy, signed"])
+def test_a_call_that_does_not_fit_its_result_is_not_repeated(name, changes, reason):
+    found = result(name)
+    asked = {**found.call.arguments, **changes}
+    wrong = replace(found, call=replace(found.call, arguments=asked))
+    with pytest.raises(NotRepeatableError, match=reason):
+        fp.rerun(wrong)
 
 
 def test_a_tampered_expansion_is_refused_by_name():

@@ -228,7 +228,7 @@ def test_a_start_of_ones_own_must_be_given():
 
 
 def test_results_that_do_not_say_how_they_were_made_are_refused():
-    message = "the result does not say how the run began; it was written by an "
+    message = "the result does not say how the run began; it was put together "
     with pytest.raises(NotRepeatableError, match=message):
         fp.rerun(relaxing_solution())
     old = tables_dataset(ENERGY, 3, 2)

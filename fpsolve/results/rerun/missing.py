@@ -22,6 +22,6 @@ def own_code(argument: str, description: str) -> NotRepeatableError:
 def unrecorded(what: str, function: str) -> NotRepeatableError:
     """Return the error for a result that does not say enough."""
     return NotRepeatableError(
-        f"the result does not say {what}; it was written by an earlier version or put "
-        f"together by hand. Call {function} again and save the result."
+        f"the result does not say {what}; it was put together by hand. "
+        f"Call {function} again and save the result."
     )
