@@ -85,7 +85,7 @@ def test_the_dataset_tells_everything(tmp_path):
         assert found.attrs["noise"] == NOISE
         assert found.attrs["method"] == "backward_euler"
         assert found.attrs["ds"] == 0.25
-        assert "numpy" in found.attrs["versions"]
+        assert "numpy" in found.attrs["provenance"]
         assert all(found[name].attrs["units"] == "1" for name in found.variables)
 
 
