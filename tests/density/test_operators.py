@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from applied_operators import applied, kicked_by_full_matrices
 from orders import assert_order, measure_order
 from problems import AngularHeat
 
@@ -31,12 +32,6 @@ LIMITED = {
     "positive rotation": RotationDiffusion(MODEL, GRID, positive=True),
 }
 OPERATORS = {**LINEAR, **LIMITED}
-
-
-def applied(operator, p, s=0.3, ds=0.2):
-    out = np.empty_like(p)
-    operator(p, s, ds, out)
-    return out
 
 
 @pytest.mark.parametrize("name", LINEAR)
@@ -121,25 +116,6 @@ def test_diffusion_of_the_angle_is_exact_in_the_drift_kick_scheme():
         kick = RotationDiffusion(problem.model, problem.grid)
         result = applied(kick, problem.initial(), 0.0, 0.9)
         np.testing.assert_allclose(result, problem.density(0.9), rtol=0, atol=1e-15)
-
-
-def kicked_by_full_matrices(kick, p, ds):
-    """R½ D R½ row by row, with one Fourier matrix and one product for each."""
-    n = p.shape[2]
-    half, alpha = n // 2, kick.grid.alpha
-    modes = np.exp(-1j * np.outer(np.arange(half), alpha))
-    heat = np.exp(-kick.model.diffusivity * ds * np.arange(half + 1) ** 2)
-    strength = np.hypot(*kick.force)
-    out, ripple = np.empty_like(p), (-1.0) ** np.arange(n)
-    for i, j in np.ndindex(*p.shape[:2]):
-        phases = np.exp(1j * np.arange(half) * np.arctan2(*kick.force[::-1])[i, j])
-        angles = rotation_table.opening(strength[i, j : j + 1], ds)
-        matrix = rotation_table.matrices_at(angles, heat[:half], kick.balanced)[0]
-        moved = ((modes @ p[i, j]) * phases) @ matrix / phases
-        moved[1:] *= 2.0
-        out[i, j] = (moved @ modes.conj()).real / n
-        out[i, j] += heat[half] * (ripple @ p[i, j]) / n * ripple
-    return out
 
 
 @pytest.mark.parametrize("balanced", [False, True])

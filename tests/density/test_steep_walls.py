@@ -6,7 +6,7 @@ G = e^{−B} (ξ₁ sin α − ξ₂ cos α) over its largest value and |q| <= 1
 
 import numpy as np
 import pytest
-from test_operators import applied, kicked_by_full_matrices
+from applied_operators import applied, kicked_by_full_matrices
 
 import fpsolve as fp
 from fpsolve._kernels import paths as kernels

@@ -7,8 +7,8 @@ from malformed import configurations, stores
 from malformed import files as results
 from malformed.cases import parametrised
 from malformed.command_lines import MISTAKES, USAGE
+from refusals import assert_one_line, everything
 from solutions import relaxing_solution
-from test_malformed_configurations import assert_one_line, everything
 
 
 @pytest.fixture(scope="module")

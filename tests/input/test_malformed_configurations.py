@@ -4,21 +4,10 @@ import pytest
 from command_line import files
 from malformed.cases import assert_said, parametrised
 from malformed.configurations import ABSURD, PATHS_FILES, RUN, RUN_FILES, written
+from refusals import assert_one_line, everything
 
 from fpsolve.cli.config import PathsConfig, RunConfig, load_config
 from fpsolve.errors import ConfigurationError, MemoryLimitError
-
-
-def everything(folder):
-    """Names of all that lies in a folder, contents of links not looked at."""
-    return sorted(str(path.relative_to(folder)) for path in folder.rglob("*"))
-
-
-def assert_one_line(result, case, code):
-    assert result.exit_code == code, result.output
-    assert result.stderr.startswith("error: ")
-    assert_said(result.stderr.removeprefix("error: "), case)
-    assert "Traceback" not in result.output
 
 
 @parametrised(RUN_FILES)

@@ -6,7 +6,7 @@ import pytest
 from malformed import files as table
 from malformed import stores
 from malformed.cases import assert_said, parametrised
-from test_malformed_configurations import everything
+from refusals import everything
 
 import fpsolve as fp
 from fpsolve.errors import FileFormatError

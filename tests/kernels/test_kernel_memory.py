@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 from kernel_cases import Arguments
+from known_kernels import KERNELS, PARALLEL, called
 from numba import njit, prange
-from test_kernels import KERNELS, PARALLEL, called
 
 # Memory that is asked for next comes from what was last given back, by size: every size
 # that kernels ask for on the grids below, several times.

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from kernel_cases import Arguments
-from numba.core.dispatcher import Dispatcher
+from known_kernels import KERNELS, MODULES, PARALLEL, called
 
 from fpsolve import initial
 from fpsolve._kernels import (
@@ -15,36 +15,15 @@ from fpsolve._kernels import (
     functionals,
     moebius,
     rotation,
-    translation,
-    tridiagonal,
 )
-from fpsolve._kernels.compiling import ParallelKernel
 from fpsolve.density.schemes import drift_kick, semi_lagrangian
 from fpsolve.density.solve import solve
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 
-MODULES = [characteristics, functionals, moebius, rotation, translation, tridiagonal]
-KERNELS = {
-    name: function
-    for module in MODULES
-    for name, function in vars(module).items()
-    if isinstance(function, Dispatcher | ParallelKernel)
-}
 SMALL, LARGE = (6, 7, 8), (20, 21, 16)
 
 
-def called(function, arguments):
-    """What a call returns and leaves in its array arguments."""
-    mine = [np.copy(a) if isinstance(a, np.ndarray) else a for a in arguments]
-    result = function(*mine)
-    returned = [] if result is None else np.atleast_1d(result)
-    return [*returned, *(a for a in mine if isinstance(a, np.ndarray))]
-
-
 CASES = Arguments(SMALL).cases()
-PARALLEL = [
-    name for name, kernel in KERNELS.items() if isinstance(kernel, ParallelKernel)
-]
 
 
 def test_every_kernel_has_a_case():
