@@ -70,6 +70,17 @@ def unsynced(monkeypatch):
 
 
 @pytest.fixture
+def undrawn(monkeypatch):
+    """Pictures are empty files: for tests of which there are, not of what they show."""
+
+    def write(figure, path):
+        path.touch()
+        return path
+
+    monkeypatch.setattr("fpsolve.plotting.files._write", write)
+
+
+@pytest.fixture
 def on_threads(monkeypatch):
     """`on_threads(n, f)` calls f on n threads of numba, however little it computes."""
     monkeypatch.setattr("fpsolve._kernels.threads.CELLS_PER_THREAD", 1)

@@ -249,7 +249,9 @@ def test_a_full_disk_is_an_error_without_a_traceback(
     assert not (tmp_path / "out").exists() or not files(tmp_path / "out")
 
 
-def test_a_stored_result_is_drawn_beside_itself_or_elsewhere(fpsolve, tmp_path):
+def test_a_stored_result_is_drawn_beside_itself_or_elsewhere(
+    fpsolve, tmp_path, undrawn
+):
     (tmp_path / "out").mkdir()
     # A movie of two frames.
     path = relaxing_solution(saved=(0.0, 5.0)).save(tmp_path / "out" / "run.nc")

@@ -8,8 +8,10 @@ import numpy as np
 import pytest
 from checkpoint_runs import Killed, assert_same_bits, left_at
 from command_line import HANGS, assert_mistake, command_waiting_at, files
+from typer.testing import CliRunner
 
 import fpsolve as fp
+from fpsolve.cli import app
 from fpsolve.density.checkpoints import snapshots
 from fpsolve.density.checkpoints.status import status_of
 
@@ -55,11 +57,14 @@ def config(tmp_path):
     return path
 
 
-@pytest.fixture
-def whole(fpsolve, config, tmp_path):
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
     """The result of a run without checkpoints."""
-    assert fpsolve("run", config, "--out", "whole", "--no-figures").exit_code == 0
-    return fp.load(tmp_path / "whole" / "small.nc")
+    folder = tmp_path_factory.mktemp("whole")
+    (folder / "run.toml").write_text(CONFIG)
+    words = ["run", folder / "run.toml", "--out", folder, "--no-figures"]
+    assert CliRunner().invoke(app, list(map(str, words))).exit_code == 0
+    return fp.load(folder / "small.nc")
 
 
 def stopping(at, by):
@@ -87,7 +92,9 @@ def killed(fpsolve, config, tmp_path, monkeypatch):
     return tmp_path / KEPT
 
 
-def test_a_run_with_checkpoints_leaves_the_same_files(fpsolve, config, whole, tmp_path):
+def test_a_run_with_checkpoints_leaves_the_same_files(
+    fpsolve, config, whole, tmp_path, undrawn
+):
     result = fpsolve("run", config, "--out", "out", "--checkpoint", 3)
     assert result.exit_code == 0, result.output
     figures = ["angle", "entropy", "marginals", "moments", "overview"]
@@ -193,7 +200,8 @@ def test_a_full_disk_is_told_with_what_is_kept(
 
     with monkeypatch.context() as patch:
         patch.setattr("fpsolve.cli.progress.progress_bar", bar)
-        result = fpsolve("run", config, "--out", "out", "--checkpoint", 4)
+        words = ["run", config, "--out", "out", "--checkpoint", 4, "--no-figures"]
+        result = fpsolve(*words)
     assert result.exit_code == 1, result.output
     first, last = result.stderr.splitlines()
     assert first.startswith("warning: what was recorded cannot be written")

@@ -7,7 +7,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 from command_line import HANGS, assert_mistake, command_waiting_at, files
-from solutions import relaxing_solution
 
 import fpsolve as fp
 from fpsolve.cli.config import PathsConfig, load_config
@@ -263,7 +262,7 @@ def test_a_full_disk_is_an_error_without_a_traceback(
 
 
 def test_stored_paths_are_drawn_beside_themselves_or_elsewhere(
-    fpsolve, config, tmp_path
+    fpsolve, config, tmp_path, undrawn
 ):
     fpsolve("paths", config, "--out", "out", "--no-figures")
     result = fpsolve("plot", "out/few.nc")
@@ -281,13 +280,6 @@ def test_a_movie_of_paths_is_refused_before_anything_is_drawn(
     result = fpsolve("plot", "out/few.nc", "--movie")
     assert_mistake(result, "`--movie` must be given with the result of `fpsolve run`")
     assert files(tmp_path / "out") == ["few.nc", "few.toml"]
-
-
-def test_a_solution_is_still_drawn_with_its_movie(fpsolve, tmp_path):
-    path = relaxing_solution(saved=(0.0, 5.0)).save(tmp_path / "run.nc")
-    result = fpsolve("plot", path, "--movie")
-    assert result.exit_code == 0, result.output
-    assert (tmp_path / "run.gif").exists()
 
 
 @pytest.mark.parametrize("command", ["paths", "check"])

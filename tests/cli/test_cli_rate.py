@@ -104,7 +104,7 @@ def test_eigenvalues_are_printed_written_and_drawn(call, tmp_path):
 
 
 def test_other_potentials_and_belts_have_spectra_too(call):
-    words = ("--no-figures", "-n", 1, "--tolerance", 1e-4)
+    words = ("--no-figures", "-n", 1, "--tolerance", 1e-4, "--noise", 3)
     steep = call(spectrum, "--potential", "power", "--exponent", 4, *words)
     assert steep.exit_code == 0, steep.output
     belt = call(spectrum, "--belt-speed", 0.1, "--sigma2", 0.8, *words)

@@ -4,9 +4,12 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
 from command_line import COMPILING, HANGS
 
 
+# All tests of .ci/run are in this mode, and most of the commands among them.
+@pytest.mark.nightly
 def test_the_example_leaves_nothing_unclosed_and_nothing_deprecated(tmp_path):
     # Development mode tells of files and processes that were not closed; every warning,
     # of whatever library, is an error here.

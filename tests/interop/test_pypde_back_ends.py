@@ -29,6 +29,7 @@ def test_numba_computes_the_same_rate_of_the_full_equation(uneven_grid):
     assert error <= 1e-14 * np.abs(plain).max()
 
 
+@pytest.mark.nightly
 def test_numba_solves_the_hydrodynamic_limit():
     grid = PlaneGrid(4.0, (8, 9))
     equation = HydrodynamicPDE(BELT)

@@ -252,7 +252,7 @@ def test_a_single_path_has_no_errors_to_draw():
     plotting.plot_ensemble(sampled(save_at=(3.0, 6.0))).canvas.draw()
 
 
-def test_the_figures_written_depend_on_what_is_there(ensemble, tmp_path):
+def test_the_figures_written_depend_on_what_is_there(ensemble, tmp_path, undrawn):
     def names(paths):
         return [path.name for path in plotting.save_figures(paths, tmp_path)]
 

@@ -39,6 +39,13 @@ def solution():
     return relaxing_solution()
 
 
+@pytest.fixture(scope="module")
+def bare():
+    """With one series only, as most of the cost of a file is that of its variables."""
+    whole = relaxing_solution(errors=False)
+    return replace(whole, series={name: whole.series[name] for name in ("s", "mass")})
+
+
 def same_bits(first, second):
     """Whether two arrays agree in type, shape and every bit, NaN included."""
     return (
@@ -68,13 +75,13 @@ def test_a_solution_comes_back_bit_for_bit(solution, tmp_path, suffix):
 
 
 @pytest.mark.parametrize("suffix", SUFFIXES)
-def test_every_bit_pattern_of_a_density_survives(solution, tmp_path, suffix, rng):
-    bits = rng.integers(0, 2**64, solution.densities.shape, dtype=np.uint64)
+def test_every_bit_pattern_of_a_density_survives(bare, tmp_path, suffix, rng):
+    bits = rng.integers(0, 2**64, bare.densities.shape, dtype=np.uint64)
     special = [np.nan, np.inf, -np.inf, -0.0, 5e-324]
     densities = bits.view(np.float64)
     densities.flat[: len(special)] = special
     path = tmp_path / f"result{suffix}"
-    replace(solution, densities=densities).save(path)
+    replace(bare, densities=densities).save(path)
     assert same_bits(fp.load(path).densities, densities)
 
 
@@ -109,9 +116,9 @@ def test_a_run_stopped_before_its_first_record_is_stored(tmp_path, suffix):
     ],
     ids=lambda curve: curve.kind,
 )
-def test_every_curve_comes_back(solution, tmp_path, curve):
+def test_every_curve_comes_back(bare, tmp_path, curve):
     model = LayDownModel(QuadraticPotential(), noise=0.1, curve=curve)
-    path = replace(solution, model=model).save(tmp_path / "result.nc")
+    path = replace(bare, model=model).save(tmp_path / "result.nc")
     assert fp.load(path).model == model
 
 
@@ -125,9 +132,9 @@ def test_every_curve_comes_back(solution, tmp_path, curve):
     ],
     ids=lambda potential: potential.kind,
 )
-def test_every_potential_comes_back(solution, tmp_path, potential):
+def test_every_potential_comes_back(bare, tmp_path, potential):
     model = LayDownModel(potential, noise=1.0)
-    path = replace(solution, model=model).save(tmp_path / "result.nc")
+    path = replace(bare, model=model).save(tmp_path / "result.nc")
     assert fp.load(path).model == model
 
 
@@ -140,9 +147,9 @@ def quartic_gradient(xi1, xi2):
     return 4 * r2 * xi1, 4 * r2 * xi2
 
 
-def test_a_model_of_functions_leaves_its_description(solution, tmp_path):
+def test_a_model_of_functions_leaves_its_description(bare, tmp_path):
     model = LayDownModel(CallablePotential(quartic, quartic_gradient), noise=1.0)
-    replace(solution, model=model).save(tmp_path / "first.nc")
+    replace(bare, model=model).save(tmp_path / "first.nc")
     with pytest.warns(UserWarning, match=r"could not be read back, so `model` is None"):
         loaded = fp.load(tmp_path / "first.nc")
     assert loaded.model is None
@@ -181,18 +188,18 @@ def test_the_dataset_says_what_was_solved(solution):
     assert attributes["Conventions"].startswith("CF-")
 
 
-def test_other_programs_read_the_file(solution, tmp_path):
-    path = solution.save(tmp_path / "result.nc")
+def test_other_programs_read_the_file(bare, tmp_path):
+    path = bare.save(tmp_path / "result.nc")
     with xr.open_dataset(path, engine="h5netcdf") as dataset:
         density = dataset["density"].sel(s=2.0)
-        np.testing.assert_array_equal(density, solution.density(2.0))
+        np.testing.assert_array_equal(density, bare.density(2.0))
 
 
 @pytest.mark.parametrize("suffix", SUFFIXES)
 def test_a_failed_write_leaves_the_old_file_and_nothing_else(
-    solution, tmp_path, suffix, monkeypatch
+    bare, tmp_path, suffix, monkeypatch
 ):
-    path = solution.save(tmp_path / f"result{suffix}")
+    path = bare.save(tmp_path / f"result{suffix}")
 
     def half_written(dataset, draft, **options):
         Path(draft).write_bytes(b"half")
@@ -201,34 +208,34 @@ def test_a_failed_write_leaves_the_old_file_and_nothing_else(
     monkeypatch.setattr(xr.Dataset, "to_netcdf", half_written)
     monkeypatch.setattr(xr.Dataset, "to_zarr", half_written)
     with pytest.raises(OSError, match="no space left"):
-        replace(solution, ds=1.0).save(path)
+        replace(bare, ds=1.0).save(path)
     assert list(tmp_path.iterdir()) == [path]
-    assert_same(fp.load(path), solution)
+    assert_same(fp.load(path), bare)
 
 
-def test_an_interrupted_write_leaves_nothing(solution, tmp_path, monkeypatch):
+def test_an_interrupted_write_leaves_nothing(bare, tmp_path, monkeypatch):
     def interrupted(dataset, draft, **options):
         Path(draft).write_bytes(b"half")
         raise KeyboardInterrupt
 
     monkeypatch.setattr(xr.Dataset, "to_netcdf", interrupted)
     with pytest.raises(KeyboardInterrupt):
-        solution.save(tmp_path / "result.nc")
+        bare.save(tmp_path / "result.nc")
     assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.parametrize("suffix", SUFFIXES)
-def test_a_new_result_takes_the_place_of_the_old_one(solution, tmp_path, suffix):
-    path = solution.save(tmp_path / f"result{suffix}")
-    replace(solution, ds=1.0).save(path)
+def test_a_new_result_takes_the_place_of_the_old_one(bare, tmp_path, suffix):
+    path = bare.save(tmp_path / f"result{suffix}")
+    replace(bare, ds=1.0).save(path)
     assert fp.load(path).ds == 1.0
     assert list(tmp_path.iterdir()) == [path]
 
 
 def test_an_older_store_returns_when_the_new_one_cannot_be_moved(
-    solution, tmp_path, monkeypatch
+    bare, tmp_path, monkeypatch
 ):
-    path = solution.save(tmp_path / "result.zarr")
+    path = bare.save(tmp_path / "result.zarr")
     rename = Path.rename
 
     def refuse_the_draft(self, target):
@@ -238,41 +245,41 @@ def test_an_older_store_returns_when_the_new_one_cannot_be_moved(
 
     monkeypatch.setattr(Path, "rename", refuse_the_draft)
     with pytest.raises(OSError, match="device is gone"):
-        replace(solution, ds=1.0).save(path)
+        replace(bare, ds=1.0).save(path)
     assert list(tmp_path.iterdir()) == [path]
-    assert fp.load(path).ds == solution.ds
+    assert fp.load(path).ds == bare.ds
 
 
-def test_a_folder_of_something_else_is_never_replaced(solution, tmp_path):
+def test_a_folder_of_something_else_is_never_replaced(bare, tmp_path):
     precious = tmp_path / "data.zarr"
     precious.mkdir()
     (precious / "thesis.tex").write_text("years of work")
     with pytest.raises(IsADirectoryError, match=r"`path` must not be a folder, got"):
-        solution.save(precious)
+        bare.save(precious)
     assert (precious / "thesis.tex").read_text() == "years of work"
 
 
-def test_a_file_never_replaces_a_store(solution, tmp_path):
-    path = solution.save(tmp_path / "result.zarr")
+def test_a_file_never_replaces_a_store(bare, tmp_path):
+    path = bare.save(tmp_path / "result.zarr")
     with pytest.raises(IsADirectoryError, match=r"`path` must not be a folder, got"):
-        solution.save(path, engine="h5netcdf")
+        bare.save(path, engine="h5netcdf")
     assert list(tmp_path.iterdir()) == [path]
-    assert_same(fp.load(path), solution)
+    assert_same(fp.load(path), bare)
 
 
-def test_the_folder_of_a_file_must_exist(solution, tmp_path):
+def test_the_folder_of_a_file_must_exist(bare, tmp_path):
     with pytest.raises(FileNotFoundError, match=r"must lie in an existing folder.*new"):
-        solution.save(tmp_path / "new" / "result.nc")
+        bare.save(tmp_path / "new" / "result.nc")
 
 
-def test_engines_are_named(solution, tmp_path):
+def test_engines_are_named(bare, tmp_path):
     with pytest.raises(ValueError, match=r"`engine` must be one of 'h5netcdf', 'zarr'"):
-        solution.save(tmp_path / "result.nc", engine="pickle")
+        bare.save(tmp_path / "result.nc", engine="pickle")
 
 
 @pytest.mark.parametrize("share", [0.0, 0.001, 0.1, 0.5, 0.999])
-def test_a_truncated_file_is_refused(solution, tmp_path, share):
-    path = solution.save(tmp_path / "result.nc")
+def test_a_truncated_file_is_refused(bare, tmp_path, share):
+    path = bare.save(tmp_path / "result.nc")
     content = path.read_bytes()
     path.write_bytes(content[: int(share * len(content))])
     with pytest.raises(FileFormatError, match=r"cannot read `.*result.nc`: ") as caught:
@@ -299,16 +306,16 @@ def test_a_store_without_anything_is_refused(tmp_path):
         fp.load(tmp_path)
 
 
-def test_a_layout_from_the_future_is_refused(solution, tmp_path):
-    dataset = solution.to_xarray()
+def test_a_layout_from_the_future_is_refused(bare, tmp_path):
+    dataset = bare.to_xarray()
     dataset.attrs["fpsolve_format"] = 99
     dataset.to_netcdf(tmp_path / "result.nc", engine="h5netcdf")
     with pytest.raises(FileFormatError, match=r"it has layout 99.*update fpsolve"):
         fp.load(tmp_path / "result.nc")
 
 
-def test_a_missing_variable_is_named(solution, tmp_path):
-    dataset = solution.to_xarray().drop_vars("entropy_floor")
+def test_a_missing_variable_is_named(bare, tmp_path):
+    dataset = bare.to_xarray().drop_vars("entropy_floor")
     del dataset.attrs["scheme"]
     dataset.to_netcdf(tmp_path / "result.nc", engine="h5netcdf")
     with pytest.raises(

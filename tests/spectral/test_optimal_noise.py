@@ -1,5 +1,6 @@
 """The best noise: where it is, what makes it, and that it is one."""
 
+import functools
 import math
 
 import numpy as np
@@ -10,6 +11,14 @@ from fpsolve.errors import ToleranceError
 from fpsolve.spectral import Sector, SpectralGap, optimal_noise, spectral_gap
 from fpsolve.spectral.eigen import optimal
 from fpsolve.spectral.eigen.branches import Branch
+
+
+@pytest.fixture(scope="module", autouse=True)
+def rough_gaps_are_computed_once():
+    """All searches for the same potential scan the same noises."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(optimal, "rough_gap", functools.cache(optimal.rough_gap))
+        yield
 
 
 @pytest.fixture(scope="module")

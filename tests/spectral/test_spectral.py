@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.sparse.linalg import eigs
 
 import fpsolve as fp
 from fpsolve.errors import MemoryLimitError, ToleranceError
@@ -48,8 +49,8 @@ def test_half_the_squared_noise_is_an_eigenvalue_of_every_isotropic_potential(
     model = fp.LayDownModel(potential, noise)
     basis = discretisation_for(model)
     matrix = basis.matrix(ODD, *basis.truncation(1))
-    values = np.linalg.eigvals(matrix.toarray())
     exact = -0.5 * noise**2
+    values = eigs(matrix, 3, sigma=(1 + 1e-5) * exact, return_eigenvectors=False)
     # Hermite series of exp(-B) fall by a factor 2 per pair of degrees, the error of the
     # eigenvalue by 4: 4^-17 at degree 34, times a constant that grows as A falls.
     assert np.min(np.abs(values - exact)) < 1e-4 * abs(exact)
@@ -103,7 +104,7 @@ def test_branches_of_different_sectors_cross():
     for before, after, noises in ((ODD, EVEN, BELOW), (EVEN, ONE, ABOVE)):
         rates = {before: [], after: []}
         for noise in noises:
-            found = spectrum(quadratic(noise), 6, tolerance=1e-8)
+            found = spectrum(quadratic(noise), 3, tolerance=1e-8)
             for sector in rates:
                 i = found.sectors.index(sector)
                 rates[sector].append(-found.eigenvalues[i].real)
@@ -192,8 +193,8 @@ def test_the_anisotropic_spectrum_joins_the_isotropic_one():
 
 def test_the_direction_of_the_belt_does_not_matter():
     models = [
-        fp.LayDownModel(fp.QuadraticPotential(1.0, 0.8), 2.5, fp.MovingBelt(speed))
-        for speed in (0.3, -0.3)
+        fp.LayDownModel(fp.QuadraticPotential(1.0, 0.8), 3.0, fp.MovingBelt(speed))
+        for speed in (0.15, -0.15)
     ]
     first, second = (spectrum(model, 2, tolerance=1e-8) for model in models)
     np.testing.assert_allclose(first.eigenvalues, second.eigenvalues, rtol=1e-8)

@@ -7,7 +7,6 @@ import textwrap
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-import distributed
 import numpy as np
 import pytest
 from sweep_functions import (
@@ -76,8 +75,11 @@ def test_spawned_processes_give_the_same_numbers_as_this_one():
 
 
 # Libraries of dask warn about their own future and leave sockets to be collected.
+@pytest.mark.nightly
 @pytest.mark.filterwarnings("ignore")
 def test_a_dask_cluster_of_two_workers_gives_the_same_numbers():
+    import distributed
+
     serial = sweep(rate_case, GAPS, workers=0)
     with (
         distributed.LocalCluster(
@@ -313,23 +315,17 @@ def test_progress_counts_the_cases(tmp_path, capsys):
 
 def test_a_script_without_a_guard_is_not_run_again(tmp_path):
     found = run_script(tmp_path, """
-        print("here")
+        print("here", flush=True)
         from sweep_functions import square
         from fpsolve.studies.sweeps.sweep import sweep
         cases = sweep(square, [{"x": 1}, {"x": 2}], workers=1)
-        print([case.status for case in cases])
-        """)  # fmt: skip
-    assert found.returncode == 0, found.stderr
-    assert found.stdout == "here\n['finished', 'finished']\n"
-
-
-def test_a_script_without_a_guard_whose_own_function_is_needed_is_told_so(tmp_path):
-    found = run_script(tmp_path, """
-        from fpsolve.studies.sweeps.sweep import sweep
+        print([case.status for case in cases], flush=True)
         def twice(x):
             return {"value": 2.0 * x}
         sweep(twice, [{"x": 1}, {"x": 2}], workers=1)
         """)  # fmt: skip
+    assert found.stdout.startswith("here\n['finished', 'finished']\n"), found.stderr
+    # Unless its own function is needed, of which it is told.
     assert found.returncode == 1
     assert 'needs the guard `if __name__ == "__main__":`' in found.stderr
 
