@@ -97,7 +97,7 @@ def test_mass_is_kept_to_1e_13_over_an_arclength_of_50(name, curve):
 
 
 @pytest.mark.parametrize("name", WELL_BALANCED)
-@pytest.mark.parametrize("noise", [0.0, 1.0, 3.0])
+@pytest.mark.parametrize("noise", [0.0, 3.0])
 def test_equilibrium_stays_to_1e_13_over_an_arclength_of_50(noise, name):
     grid = COARSE if noise > 0 else GRID
     problem = Equilibrium(LayDownModel(QuadraticPotential(), noise), grid)
@@ -188,7 +188,7 @@ def test_limited_characteristics_with_backward_euler_never_go_below_zero(model):
     assert solution.minimum.min() >= -1e-16
 
 
-@pytest.mark.parametrize("noise", [0.0, 0.05, 0.1, 0.3])
+@pytest.mark.parametrize("noise", [0.0, 0.05, 0.3])
 @pytest.mark.parametrize("name", STABLE)
 def test_the_balanced_forms_are_stable_at_low_noise(name, noise):
     # The p-form of the characteristics blows up here; for h the maximum principle of

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from dataclasses import replace
 
+import h5py
 import numpy as np
 import xarray as xr
 from solutions import relaxing_solution
@@ -89,18 +90,30 @@ def without_checksums(change):
     return lambda path: tampered(change, path)
 
 
+def with_attributes(change):
+    """A file as of an older version with changed attributes, written in its place."""
+
+    def damage(path):
+        with h5py.File(path, "a") as file:
+            del file.attrs["fpsolve_checksums"]
+            change(file.attrs)
+        return path
+
+    return damage
+
+
 def attribute(**changes):
-    return without_checksums(lambda dataset: dataset.attrs.update(changes))
+    return with_attributes(lambda attributes: attributes.update(changes))
 
 
 def described(name, **changes):
     """A changed entry of an attribute that is JSON."""
 
-    def change(dataset):
-        description = {**json.loads(dataset.attrs[name]), **changes}
-        dataset.attrs[name] = json.dumps(description)
+    def change(attributes):
+        description = {**json.loads(attributes[name]), **changes}
+        attributes[name] = json.dumps(description)
 
-    return without_checksums(change)
+    return with_attributes(change)
 
 
 def variable(name, change):
@@ -120,8 +133,6 @@ def kept_checksums(path):
 
 
 def plain_hdf5(path):
-    import h5py
-
     with h5py.File(path, "w") as file:
         file["numbers"] = np.arange(3.0)
     return path
