@@ -9,7 +9,7 @@ from matplotlib.image import imread
 from fpsolve.studies.limits.energy_law import SmoothedLaw
 
 SMALL = ("small-noise", "--noise", "0.5", "--quick", "--workers", "0")
-LARGE = ("large-noise", "--noise", "2", "--noise", "2.8", "--quick", "--workers", "0")
+LARGE = ("large-noise", "--noise", "1.5", "--noise", "2", "--quick", "--workers", "0")
 
 
 @pytest.fixture

@@ -56,7 +56,8 @@ def test_the_version_is_that_of_the_distribution_when_installed():
 
 def test_import_loads_nothing_heavy():
     loaded = run(
-        f"import fpsolve, sys; print([m for m in {HEAVY!r} if m in sys.modules])"
+        "import fpsolve.studies, sys; "
+        f"print([m for m in {('numpy', *HEAVY)!r} if m in sys.modules])"
     )
     assert loaded.strip() == "[]"
 
@@ -70,7 +71,11 @@ def test_import_loads_nothing_heavy():
             "fp.solve, fp.drift_kick, fp.PhaseSpaceGrid",
             ("matplotlib", "xarray", "typer"),
         ),
-        ("fp.load", ("matplotlib", "typer")),
+        # Of the studies the one that is asked for.
+        (
+            "fp.load, fp.studies.cross_check",
+            ("matplotlib", "typer", "fpsolve.studies.ergodicity.averages"),
+        ),
     ],
 )
 def test_names_load_only_what_they_need(statement, unwanted):

@@ -2,8 +2,6 @@
 
 import json
 import math
-import subprocess
-import sys
 from dataclasses import replace
 
 import numpy as np
@@ -524,19 +522,6 @@ def test_results_must_have_an_arclength_in_common(right):
         ValueError, match=r"`name` must be one of 'coarse cells', .* got 'x'"
     ):
         right.test("x", 1.0)
-
-
-def test_the_names_of_the_package_are_loaded_on_first_use():
-    code = (
-        "import sys, fpsolve.studies as studies\n"
-        "print(sorted({'numpy', 'scipy', 'numba'} & sys.modules.keys()))\n"
-        "studies.cross_check;"
-        "print('fpsolve.studies.ergodicity.averages' in sys.modules)"
-    )
-    done = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, check=False
-    )
-    assert done.stdout.split("\n")[:2] == ["[]", "False"], done.stderr
 
 
 def test_the_package_lists_its_names_and_knows_no_others():
