@@ -1,6 +1,7 @@
 """First passage: the equation, exact occupations, killed chains, sampled paths."""
 
 import math
+from functools import cache
 from itertools import pairwise
 
 import numpy as np
@@ -89,6 +90,7 @@ def test_occupations_add_up_to_the_mean(process):
 
 @pytest.mark.parametrize("from_above", [False, True])
 def test_a_killed_chain_of_cells_converges_to_mean_and_variance(from_above):
+    @cache
     def errors(n):
         grid = QUADRATIC.grid(n)
         place = n // 2
