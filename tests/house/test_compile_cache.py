@@ -112,8 +112,10 @@ def run(tmp_path):
 
 @pytest.mark.parametrize(
     ("obstacle", "reason"),
-    [(READ_ONLY, "no locator available"), (FULL, "File too large")],
-    ids=["read-only", "full"],
+    [
+        pytest.param(READ_ONLY, "no locator available", id="read-only"),
+        pytest.param(FULL, "File too large", id="full", marks=pytest.mark.nightly),
+    ],
 )
 def test_kernels_that_cannot_be_kept_are_compiled_anew(run, obstacle, reason):
     found, told = run(obstacle + USE)

@@ -452,11 +452,12 @@ def test_memory_that_does_not_suffice_is_told():
         spectral_solve(MODEL, START, 1.0, memory_limit=10**6)
     # A point-like start: just after it, and for a while, it needs too many degrees.
     needle = GaussianLaw((1.0, 0.0), 0.01, 0.0, 1.0)
+    turning = fp.LayDownModel(fp.QuadraticPotential(), 2.0)
     limits = {"tolerance": 1e-3, "memory_limit": 25 * 10**6}
     with pytest.raises(ToleranceError, match="start from a wider density"):
-        spectral_solve(MODEL, needle, (0.01,), **limits)
-    with pytest.raises(ToleranceError, match="reached from s = 8 on; ask for later"):
-        spectral_solve(MODEL, needle, (0.01, 8.0), **limits)
+        spectral_solve(turning, needle, (0.01,), **limits)
+    with pytest.raises(ToleranceError, match="reached from s = 4 on; ask for later"):
+        spectral_solve(turning, needle, (0.01, 4.0), **limits)
     slow = fp.LayDownModel(fp.QuadraticPotential(), 0.3, fp.MovingBelt(0.3))
     with pytest.raises(ToleranceError, match="raise `memory_limit` or `tolerance`"):
         spectral_steady_state(slow, memory_limit=10**8)

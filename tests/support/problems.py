@@ -135,7 +135,7 @@ class TracedCharacteristics:
         return self.grid.evaluate(self.start)
 
     def density(self, s, every=1):
-        """Values in every so-manieth cell along ξ₁ and ξ₂, and at all angles."""
+        """Values at all angles, in one of `every` cells along ξ₁ and along ξ₂."""
         cells = np.broadcast_arrays(*self.grid.mesh())
         arrival = [part[::every, ::every] for part in cells]
         shape = arrival[0].shape
