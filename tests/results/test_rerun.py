@@ -92,23 +92,6 @@ RESULTS = {
     "rates": lambda: studies.rate_versus_noise(
         QUADRATIC, [2.0], quick=True, parts=["gap"], workers=0
     ),
-<<<<<<< HEAD:tests/results/test_rerun.py
-=======
-    "large noise": lambda: studies.large_noise_limit(
-        QUADRATIC, [3.0], quick=True, parts=["gap"], workers=0
-    ),
-    "small noise": lambda: studies.small_noise_limit(
-        QUADRATIC,
-        [0.8],
-        belt_speed_scales=[0.0],
-        slow_length=0.25,
-        n_paths=50,
-        quick=True,
-        workers=0,
-    ),
-    "small noise, spectrum": lambda: studies.small_noise_spectrum(QUADRATIC, [0.8]),
-    "energy tables": lambda: tables_dataset(ENERGY, 3, 2),
->>>>>>> 94219eb (Damaged files are made by one change of an attribute, studies repeated once):tests/test_rerun.py
     "check": lambda: checked(START_ON_FINER, scheme=fp.drift_kick(MODEL, FINER)),
     "check, law": lambda: checked(GaussianLaw((0.5, 0.0), 0.8, 1.0, 1.0)),
 }
@@ -420,13 +403,3 @@ def test_mistakes_of_the_command_are_one_line(fpsolve, tmp_path):
     message = "`--out` must not be the folder of the file, got `.`; the result"
     assert_mistake(fpsolve("rerun", "old.nc", "--out", "."), message)
     assert files(tmp_path) == ["old.nc"]
-<<<<<<< HEAD:tests/results/test_rerun.py
-=======
-
-
-def test_environment_and_versions_are_in_every_study():
-    for name in ("rates", "large noise", "energy tables", "averages"):
-        attributes = result(name).attrs
-        assert json.loads(attributes["environment"])["packages"]
-        assert json.loads(attributes["versions"])["fpsolve"]
->>>>>>> 94219eb (Damaged files are made by one change of an attribute, studies repeated once):tests/test_rerun.py
