@@ -85,14 +85,12 @@ RESULTS = {
     ),
     "paths, not kept": lambda: sampled(keep=False, method="heun", s_start=0.5),
     "paths, continued": lambda: sampled().continued(2.0),
-    "hydrodynamic": lambda: hydrodynamic(extrapolate=True, save_at=[0.0, 1.0]),
     "energy, point": lambda: energy(0.2, extrapolate=True),
     "energy, density": lambda: energy(lambda g: 1 + g),
     "energy, masses": lambda: energy(np.arange(20.0)),
     "rates": lambda: studies.rate_versus_noise(
         QUADRATIC, [2.0], quick=True, parts=["gap"], workers=0
     ),
-    "check": lambda: checked(START_ON_FINER, scheme=fp.drift_kick(MODEL, FINER)),
     "check, law": lambda: checked(GaussianLaw((0.5, 0.0), 0.8, 1.0, 1.0)),
 }
 
