@@ -182,7 +182,9 @@ def test_a_result_is_loaded_bit_for_bit(name, ending, tmp_path):
 @pytest.mark.parametrize("name", MAKERS)
 def test_a_result_is_repeated_from_its_file_to_the_last_bit(name, tmp_path):
     path = saved(result(name), tmp_path / "result.nc")
-    again = fp.rerun(path)
+    # One of the studies is repeated in processes, as all would be without this.
+    in_process = KINDS[name.partition(",")[0]].counts == "cases" and name != "rate"
+    again = fp.rerun(path, **({"workers": 0} if in_process else {}))
     assert type(again) is type(result(name))
     comparison = fp.compare(result(name), again)
     assert comparison.equal, str(comparison)
