@@ -331,6 +331,7 @@ def test_help_imports_nothing_that_takes_long():
     assert done.stdout.strip() == "[]", done.stderr
 
 
+@pytest.mark.processes
 def test_a_signal_stops_a_run_and_keeps_it(config, tmp_path):
     config.write_text(CONFIG.replace("save_at = [0.5, 1.0]", "save_at = [0.0]"))
     process = command_waiting_at(3, "run", config, "--out", tmp_path / "out", cwd=ROOT)

@@ -240,6 +240,7 @@ def test_a_folder_of_something_else_is_a_mistake(fpsolve, config, tmp_path):
     assert_mistake(result, "which holds `notes`; name another")
 
 
+@pytest.mark.processes
 def test_a_process_that_is_killed_leaves_a_run_that_can_be_resumed(
     fpsolve, config, whole, tmp_path
 ):

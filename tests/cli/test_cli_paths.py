@@ -289,6 +289,7 @@ def test_help_shows_a_working_example(fpsolve, command):
     assert f"Example: fpsolve {command}" in result.stdout
 
 
+@pytest.mark.processes
 def test_a_signal_stops_the_sampling_and_keeps_what_is_done(config, tmp_path):
     at = "save_at = [0.0, 0.125, 0.5, 1.0]"
     config.write_text(CONFIG.replace("save_every = 0.5", at))

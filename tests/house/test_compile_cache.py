@@ -11,6 +11,9 @@ import pytest
 
 from fpsolve._kernels import compile_lock
 
+# Each compiles in a process of its own.
+pytestmark = pytest.mark.processes
+
 KERNELS = """
 from fpsolve._kernels.compiling import njit
 

@@ -74,6 +74,7 @@ def lines_of(layer, script, *more):
     return found.stdout.splitlines()
 
 
+@pytest.mark.processes
 @pytest.mark.parametrize("layer", ["omp", "workqueue"])
 def test_a_pool_by_fork_gives_the_same_numbers_or_refuses(layer):
     lines = [line.split(" | ") for line in lines_of(layer, SCRIPT)]

@@ -135,6 +135,7 @@ def found(tmp_path_factory):
     return np.load(folder / "found.npz"), np.load(folder / "ours.npz")
 
 
+@pytest.mark.processes
 def test_a_potential_a_scheme_and_a_series_are_configured_saved_and_run_again(found):
     added, ours = found
     # The same equation with the same steps; e^{-B} in other words: rounding.

@@ -55,6 +55,7 @@ def test_two_threads_give_the_bits_of_one(name, in_this_process, on_threads):
     assert on_threads(2, lambda: digest_of(name)) == in_this_process[name]
 
 
+@pytest.mark.processes
 def test_threads_of_blas_and_the_limit_of_numba_change_no_bit(in_this_process):
     # Without the limit of one thread the spectrum of the energy process differs.
     assert in_another_process(1, 2) == in_this_process

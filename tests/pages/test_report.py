@@ -17,6 +17,9 @@ from fpsolve.errors import FileFormatError
 from fpsolve.pages.blocks import Figure
 from fpsolve.pages.equations import mathml
 
+# What pages show, as that of the documentation.
+pytestmark = pytest.mark.documents
+
 
 @pytest.fixture(scope="module")
 def folder():

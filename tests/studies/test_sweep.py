@@ -107,6 +107,7 @@ def test_a_failed_case_leaves_its_message_and_stops_no_other():
     assert found[2].values["x"] == 3
 
 
+@pytest.mark.processes
 def test_a_process_that_dies_takes_only_its_own_case_with_it():
     found = sweep(dies_at_two, CASES, workers=2)
     assert [case.status for case in found] == ["finished", "failed", "finished"]
@@ -313,6 +314,7 @@ def test_progress_counts_the_cases(tmp_path, capsys):
     assert "3/3" in capsys.readouterr().err
 
 
+@pytest.mark.processes
 def test_a_script_without_a_guard_is_not_run_again(tmp_path):
     found = run_script(tmp_path, """
         print("here", flush=True)
