@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from fpsolve._support.labels import marked
 from fpsolve._support.netcdf import write_dataset
 
 if TYPE_CHECKING:
@@ -27,7 +28,5 @@ class Saved:
 
 def described_as(dataset: xr.Dataset, result: Any) -> xr.Dataset:
     """Return the dataset with the kind of its result, and how that was called."""
-    from fpsolve._support.labels import marked
-
     dataset = dataset if result.call is None else result.call.on(dataset)
     return marked(dataset, result.kind)
