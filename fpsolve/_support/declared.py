@@ -137,20 +137,11 @@ def _types() -> TypeAdapter[Any]:
 
 def _provenance_type() -> Any:
     """Type of what `provenance` holds, as far as it is read."""
-    count, counts = _count(), list[_count()]  # type: ignore[misc]
-    run = _entries("Run", {
-        "s_span": list[float], "ds": float, "save_at": list[float] | None,
-        "record_every": count, "extrapolate": bool, "method": str,
-        "mass_tolerance": float, "boundary_tolerance": float,
-        "negative_tolerance": float,
-    })  # fmt: skip
-    asked = _entries("Asked", {"n_paths": count, "n_steps": count, "saves": counts})
     return _entries("Provenance", {
         "versions": _TEXTS_BY_NAME, "environment": _environment_type(), "date": str,
-        "wall_seconds": float, "cpu_seconds": float, "n_steps": count,
+        "wall_seconds": float, "cpu_seconds": float, "n_steps": _count(),
         "extrapolated": bool, "configuration": str, "suggested": _TEXTS_BY_NAME,
-        "run": run, "asked": asked, "initial_description": _TABLE,
-        "model_description": str, "equation": str,
+        "initial_description": _TABLE, "model_description": str, "equation": str,
     })  # fmt: skip
 
 

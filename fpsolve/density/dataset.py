@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from fpsolve._support.labels import labels, marked, origin, to_json
+from fpsolve._support.labels import labels, origin, to_json
 from fpsolve._support.streaming import Streamed
+from fpsolve.evolution.saved import described_as
 from fpsolve.evolution.series import (
     COORDINATES,
     DENSITY,
@@ -33,7 +34,7 @@ def to_xarray(solution: Any, densities: Any = None) -> xr.Dataset:
     `xi1`, `xi2`, `alpha`, and `step` (recorded steps, with the coordinate `s_step`).
     Error estimates, when there are any, are variables that end in `_error`. The
     attributes hold equation, model, grid and scheme (as JSON), `ds`, status, versions
-    and date; `provenance` holds the arguments of the run. `initial_density` is there
+    and date; `call` holds the arguments of the run. `initial_density` is there
     unless it is among the saved densities, `reference_density` if one was given: with
     them the run can be repeated.
 
@@ -69,7 +70,7 @@ def to_xarray(solution: Any, densities: Any = None) -> xr.Dataset:
         error = f"{name}_error"
         variables[error] = (dimension, values, labels(long_name(error)))
     dataset = xr.Dataset(variables, _coordinates(solution), _attributes(solution))
-    return marked(dataset, "solution")
+    return described_as(dataset, solution)
 
 
 def stored_parts(solution: Any) -> tuple[xr.Dataset, Streamed | None]:

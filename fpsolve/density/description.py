@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from fpsolve._support.digests import SAMPLED, digest_of, plain
 from fpsolve.density.schemes.known import SCHEMES
 from fpsolve.density.schemes.scheme import Scheme
+from fpsolve.evolution.call import IDENTITY
 from fpsolve.evolution.schedule import Schedule, make_schedule
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.model.curves.samples import digest_of_curve
@@ -33,7 +34,7 @@ Array = NDArray[np.float64]
 
 # Keys of digests, and what these are digests of.
 CODE, _STEP = "code", "first_step"
-_DIGESTS = {SAMPLED: "values", CODE: "code", _STEP: "values"}
+_DIGESTS = {SAMPLED: "values", CODE: "code", _STEP: "values", IDENTITY: "code"}
 # A value that takes more characters is not shown.
 _LONGEST = 50
 

@@ -13,11 +13,12 @@ from numpy.typing import NDArray
 from fpsolve._support.checks import check_call, shown
 from fpsolve.density.solution import Solution
 from fpsolve.errors import ObservationError
+from fpsolve.evolution.call import IDENTITY, USER_CODE
 from fpsolve.evolution.series import COORDINATES, SERIES, START, Series
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.model.identity.digests import digest_or_none
 
-__all__ = ["Observe", "observed_digests", "observed_series"]
+__all__ = ["Observe", "described_observed", "observed_series"]
 
 Array = NDArray[np.float64]
 # A name, and what gives a number for a density on a grid.
@@ -49,8 +50,8 @@ def observed_series(observe: Observe | None) -> tuple[Series, ...]:
     return tuple(_series(name, function) for name, function in observe.items())
 
 
-def observed_digests(observe: Observe | None, kept: bool) -> dict[str, Any]:
-    """What a description of the run says of `observe`: a digest of each function.
+def described_observed(observe: Observe | None, kept: bool) -> dict[str, Any] | None:
+    """What the call of a run says of `observe`: a digest of each function.
 
     Parameters
     ----------
@@ -64,7 +65,7 @@ def observed_digests(observe: Observe | None, kept: bool) -> dict[str, Any]:
         If they cannot be told apart.
     """
     if not observe:
-        return {}
+        return None
     digests = {name: digest_or_none(one) for name, one in observe.items()}
     unknown = [name for name, digest in digests.items() if digest is None]
     if kept and unknown:
@@ -72,7 +73,7 @@ def observed_digests(observe: Observe | None, kept: bool) -> dict[str, Any]:
             f"`observe[{unknown[0]!r}]` must be told from others by code and data to "
             "be kept in a checkpoint; leave out `checkpoint`, or what has neither."
         )
-    return {"observe": digests}
+    return {name: {USER_CODE: name, IDENTITY: one} for name, one in digests.items()}
 
 
 def _check_name(name: Any) -> None:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from fpsolve._support.declared import declared
 from fpsolve._support.labels import check_complete
 from fpsolve.density.dataset import saves_start
 from fpsolve.density.solution import Solution
+from fpsolve.evolution.call import CALL, Call
 from fpsolve.evolution.layout import check_solution_layout
 from fpsolve.evolution.series import read_errors, read_series
 from fpsolve.grids.phase_space import PhaseSpaceGrid
@@ -73,16 +73,17 @@ def from_xarray(dataset: xr.Dataset) -> Solution:
         message=attributes["message"],
         errors=errors or None,
         provenance=provenance,
-        **_read_start(dataset, provenance),
+        **_read_start(dataset),
+        call=Call.from_xarray(dataset),
     )
 
 
-def _read_start(dataset: xr.Dataset, provenance: Mapping[str, Any]) -> dict[str, Any]:
+def _read_start(dataset: xr.Dataset) -> dict[str, Any]:
     p0 = reference = None
     if "initial_density" in dataset:
         p0 = dataset["initial_density"].values
-    # Of an older file it is not known whether the first density was the initial one.
-    elif "run" in provenance and saves_start(
+    # Of one that was put together by hand it is not known.
+    elif CALL in dataset.attrs and saves_start(
         dataset["s"].values, dataset["s_step"].values
     ):
         p0 = dataset["density"].values[0]

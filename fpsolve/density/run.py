@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +25,7 @@ from fpsolve.errors import (
     RunError,
     RunInterrupted,
 )
+from fpsolve.evolution.call import Call
 from fpsolve.evolution.schedule import Schedule
 from fpsolve.evolution.series import Series
 
@@ -46,13 +47,13 @@ class Run(Pass):
         reference: Array | None,
         observed: Sequence[Series],
         tolerances: Tolerances,
-        arguments: dict[str, Any],
+        call: Call,
         schedule: Schedule,
         keeper: MemoryKeeper | CheckpointKeeper,
     ) -> None:
         super().__init__(scheme, p0, reference, observed, schedule)
         self.tolerances, self.keeper = tolerances, keeper
-        self.p0, self.reference, self.arguments = p0, reference, arguments
+        self.p0, self.reference, self.call = p0, reference, call
         self.saves = frozenset(schedule.saves)
 
     def complete(
@@ -164,12 +165,10 @@ class Run(Pass):
             entropy_floor=recorder.floor(),
             status=status,
             message=message,
-            provenance={
-                **self.watch.provenance(self.state.n_steps),
-                "run": self.arguments,
-            },
+            provenance=self.watch.provenance(self.state.n_steps),
             initial_density=self._kept_start(),
             reference=self.reference,
+            call=self.call,
         )
 
     def _kept_start(self) -> Array:

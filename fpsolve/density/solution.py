@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from fpsolve._support.netcdf import write_dataset
 from fpsolve.density.dataset import stored_parts, to_xarray
 from fpsolve.density.error_laws import mean_square_force, slope_at_origin
+from fpsolve.evolution.call import Call
 from fpsolve.evolution.decay import DecayRate, fit_decay
 from fpsolve.evolution.schedule import saved_index
 from fpsolve.grids import diagnostics
@@ -68,11 +69,13 @@ class Solution:
     errors : dict of ndarray, or None
         Richardson estimates: "density_l1" (n_saved,) and one array per series.
     provenance : dict
-        Versions, date, times, number of steps; `run` holds the arguments of `solve`.
+        Versions, date, times, number of steps.
     initial_density : ndarray, shape (n1, n2, n_alpha), or None
         p0, from which the run began; None for a file that does not hold it.
     reference : ndarray or None
         What the entropy is relative to, if it was given.
+    call : Call or None
+        How `solve` was called.
     """
 
     kind: ClassVar[str] = "solution"
@@ -91,6 +94,7 @@ class Solution:
     provenance: dict[str, Any] = field(default_factory=dict)
     initial_density: Array | None = None
     reference: Array | None = None
+    call: Call | None = None
 
     def __getattr__(self, name: str) -> Array:
         # Only called for names that are not fields; guards against half-built

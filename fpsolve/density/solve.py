@@ -18,14 +18,19 @@ from fpsolve._support.memory import check_memory, required_memory
 from fpsolve._support.progress import ProgressCallback, reporting
 from fpsolve._support.provenance import announced_compilation
 from fpsolve.density.checkpoints.checkpoint import Checkpoint, as_checkpoint
-from fpsolve.density.description import RunDescription, run_arguments
+from fpsolve.density.description import (
+    RunDescription,
+    described_scheme,
+    run_arguments,
+)
 from fpsolve.density.extrapolation import extrapolated
 from fpsolve.density.keeper import MemoryKeepers
-from fpsolve.density.observed import Observe, observed_digests, observed_series
+from fpsolve.density.observed import Observe, described_observed, observed_series
 from fpsolve.density.run import Run
 from fpsolve.density.schemes.scheme import Scheme, checked_scheme, checked_start
 from fpsolve.density.solution import Solution
 from fpsolve.density.tolerances import Tolerances
+from fpsolve.evolution.call import Call, Kept
 from fpsolve.evolution.schedule import Schedule, checked_stops, make_schedule
 from fpsolve.grids.diagnostics import checked_reference
 
@@ -161,14 +166,21 @@ def solve(
     arguments = run_arguments(
         s_span, ds, save_at, record_every=record_every, extrapolate=extrapolate,
         **allowed,
-    ) | observed_digests(observe, checkpoint is not None)  # fmt: skip
+    )  # fmt: skip
+    told = described_observed(observe, checkpoint is not None)
+    call = Call.of("solve", {
+        "scheme": described_scheme(scheme), "p0": Kept("initial_density", p0),
+        "reference": None if reference is None else Kept("reference", reference),
+        "observe": told, **arguments,
+    })  # fmt: skip
+    arguments |= {"observe": told} if told else {}
     with (
         threads_worth_their_wait(p0.size),
         _keepers(checkpoint, scheme, p0, reference, arguments) as keepers,
         reporting(progress) as report,
         announced_compilation(bool(progress)),
     ):
-        begin = partial(Run, scheme, p0, reference, observed, tolerances, arguments)
+        begin = partial(Run, scheme, p0, reference, observed, tolerances, call)
         return _completed(begin, keepers, schedule, extrapolate, report)
 
 

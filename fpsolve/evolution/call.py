@@ -30,6 +30,8 @@ if TYPE_CHECKING:
 __all__ = [
     "ARRAY",
     "CALL",
+    "IDENTITY",
+    "KEPT",
     "USER_CODE",
     "WHERE",
     "Call",
@@ -44,7 +46,7 @@ Arrays = dict[str, NDArray[Any]]
 # Name of the attribute.
 CALL = "call"
 # An object is a dictionary with one key, its kind; JSON has no other way to say it.
-USER_CODE, ARRAY, _TUPLE = "$user_code", "$array", "$tuple"
+USER_CODE, ARRAY, KEPT, _TUPLE = "$user_code", "$array", "$kept", "$tuple"
 # Beside the name of a user's code stands what it is, for a comparison to see.
 IDENTITY = "identity"
 # Arguments that only say where something is computed, or how it is told.
@@ -66,7 +68,8 @@ class Call:
     arguments : mapping
         As JSON holds them; objects by their `to_dict`, long arrays by digest.
     arrays : mapping of ndarray
-        The long ones, by the names that they have in a dataset.
+        The long ones, by the names that they have in a dataset; but those that the
+        result holds anyway.
     """
 
     function: str
@@ -127,15 +130,16 @@ class Call:
 
 @dataclass(frozen=True, eq=False)
 class Kept:
-    """An argument that the dataset holds in a variable of its own.
+    """An argument that the result holds, as an attribute of its own.
 
     Attributes
     ----------
-    variable : str
+    attribute : str
+        Its place in the result, as "initial_density" or "initial.p".
     values : ndarray
     """
 
-    variable: str
+    attribute: str
     values: NDArray[Any]
 
 
@@ -174,8 +178,7 @@ def described(value: Any, name: str, arrays: Arrays) -> Any:
     if isinstance(value, list | tuple):
         return _series(value, name, arrays)
     if isinstance(value, Kept):
-        arrays[value.variable] = value.values
-        return {ARRAY: value.variable, IDENTITY: digest_of(value.values)}
+        return {KEPT: value.attribute, IDENTITY: digest_of(value.values)}
     if isinstance(value, np.ndarray) and value.dtype.kind in "biuf":
         return _array(value, name, arrays)
     if isinstance(value, np.generic):

@@ -61,7 +61,7 @@ def section(paths: Paths, source: str) -> Section:
     parts += [
         Part("Moments", _moments(paths)),
         Part("Figures", _figures(paths)),
-        provenance_part(paths.provenance, steps="steps of all paths"),
+        provenance_part(paths.provenance, steps="steps of all paths", call=paths.call),
     ]
     return Section("Sampled paths", source, parts)
 

@@ -75,7 +75,7 @@ def section(solution: Solution, source: str) -> Section:
         Part("Numbers at saved arclengths", _numbers(solution, process)),
         Part("Accuracy", _accuracy(solution)),
         Part("Figures", _figures(solution)),
-        provenance_part(solution.provenance),
+        provenance_part(solution.provenance, call=solution.call),
     ]
     return Section("Density of a run", source, [part for part in parts if part.blocks])
 

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve._support.labels import labels, marked, origin, to_json
+from fpsolve._support.labels import labels, origin, to_json
+from fpsolve.evolution.saved import described_as
 from fpsolve.evolution.series import SERIES
 from fpsolve.model.laydown import LayDownModel
 from fpsolve.model.stored import describe_model
@@ -58,7 +59,7 @@ def to_xarray(paths: Any) -> xr.Dataset:
         **law_variables(paths.initial),
     }
     dataset = xr.Dataset(variables, _coordinates(paths), _attributes(paths))
-    return marked(dataset, "paths")
+    return described_as(dataset, paths)
 
 
 def _positions(paths: Any) -> dict[str, Any]:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from fpsolve._support.declared import declared
 from fpsolve._support.labels import check_complete
+from fpsolve.evolution.call import Call
 from fpsolve.evolution.layout import (
     check_counts,
     check_dimensions,
@@ -87,6 +88,7 @@ def from_xarray(dataset: xr.Dataset) -> Paths:
         status=attributes["status"],
         message=attributes["message"],
         provenance=provenance,
+        call=Call.from_xarray(dataset),
     )
 
 

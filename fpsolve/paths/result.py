@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from fpsolve._support.checks import check_integer, check_real
 from fpsolve._support.memory import check_memory
 from fpsolve._support.netcdf import write_dataset
+from fpsolve.evolution.call import Call
 from fpsolve.evolution.schedule import saved_index
 from fpsolve.grids.phase_space import PhaseSpaceGrid, check_grid
 from fpsolve.model.laydown import LayDownModel
@@ -60,6 +61,8 @@ class Paths:
     message : str
     provenance : dict
         Versions, date, times, number of path-steps.
+    call : Call or None
+        The call of `sample_paths` that gives these paths, all of them and whole.
     """
 
     kind: ClassVar[str] = "paths"
@@ -75,6 +78,7 @@ class Paths:
     status: str = "finished"
     message: str = ""
     provenance: dict[str, Any] = field(default_factory=dict)
+    call: Call | None = None
 
     @property
     def model(self) -> LayDownModel:

@@ -20,8 +20,10 @@ from fpsolve._support.memory import OVERHEAD
 from fpsolve._support.progress import ProgressCallback, reporting
 from fpsolve._support.provenance import Stopwatch, announced_compilation
 from fpsolve.errors import NonFinitePathError, RunInterrupted
+from fpsolve.evolution.call import Call
 from fpsolve.evolution.schedule import Schedule, make_schedule
 from fpsolve.paths.batch import Batch, BatchRun, batches_of
+from fpsolve.paths.call import call_of
 from fpsolve.paths.elsewhere import code_of, run_there
 from fpsolve.paths.ensemble import Ensemble, GivenStart
 from fpsolve.paths.integrators import LARGEST_TURN
@@ -58,7 +60,7 @@ def completed(
     client, progress
         As for `sample_paths`.
     """
-    watch, gather = Stopwatch(), partial(gathered, make, before)
+    watch, gather = Stopwatch(), partial(gathered, make, before, call_of(ensemble))
     states = None
     if before is not None:
         states = before.end
@@ -198,20 +200,14 @@ def finished_part(
     saves = ensemble.schedule.saves[: len(batches[0].sums)]
     schedule = replace(ensemble.schedule, n_steps=reached, saves=saves)
     fewer = replace(ensemble, n_paths=n_paths, schedule=schedule)
-    asked = ensemble.schedule
-    provenance = {
-        **watch.provenance(n_paths * reached),
-        "asked": {
-            "n_paths": ensemble.n_paths, "n_steps": asked.n_steps,
-            "saves": list(asked.saves),
-        },
-    }  # fmt: skip
+    provenance = watch.provenance(n_paths * reached)
     return replace(gather(fewer, batches, provenance), status="interrupted")
 
 
 def gathered(
     make: Callable[..., Any],
     before: Any,
+    call: Call,
     ensemble: Ensemble,
     batches: list[Batch],
     provenance: dict[str, Any],
@@ -231,6 +227,7 @@ def gathered(
         start=start,
         end=np.concatenate([batch.end for batch in batches], axis=1),
         provenance=provenance,
+        call=call,
     )
 
 

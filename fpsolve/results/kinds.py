@@ -30,8 +30,6 @@ class Kind:
     reading : str
         "module:name" of what makes the result from its dataset; empty for a study,
         which is a dataset.
-    repeating : str
-        "module:name" of what repeats one otherwise than by its `call`.
     counts : str
         What a progress bar counts while it is computed: "steps" (with s), "cases", or
         nothing.
@@ -42,7 +40,6 @@ class Kind:
     words: str
     function: str | Callable[..., Any]
     reading: str | Callable[..., Any] = ""
-    repeating: str = ""
     counts: str = ""
     variables: tuple[str, ...] = ()
     attributes: tuple[str, ...] = ()
@@ -54,13 +51,11 @@ _POTENTIAL = ("potential", "formula", "versions")
 KINDS = {
     "solution": Kind(
         "solutions", "fpsolve.density.solve:solve",
-        "fpsolve.density.reading:from_xarray",
-        "fpsolve.results.rerun.solutions:repeat_solution", counts="steps",
+        "fpsolve.density.reading:from_xarray", counts="steps",
     ),
     "paths": Kind(
         "paths", "fpsolve.paths.sampling:sample_paths",
-        "fpsolve.paths.reading:from_xarray",
-        "fpsolve.results.rerun.paths:repeat_paths", counts="steps",
+        "fpsolve.paths.reading:from_xarray", counts="steps",
     ),
     "hydrodynamic": Kind(
         "solutions of the hydrodynamic limit",

@@ -134,7 +134,7 @@ def test_what_a_row_names_is_there(name):
     kind = KINDS[name]
     module, _, function = kind.function.partition(":")
     assert callable(attrgetter(function)(importlib.import_module(module)))
-    for place in (kind.reading, kind.repeating, PAGES[name]):
+    for place in (kind.reading, PAGES[name]):
         assert not place or callable(named(place))
 
 

@@ -211,6 +211,8 @@ def test_for_a_potential_of_ones_own_the_model_must_be_given(tmp_path):
         fp.rerun(file)
     again = fp.rerun(file, model=own)
     np.testing.assert_array_equal(again.densities, solution.densities)
+    # Until it is written the result has it.
+    assert fp.compare(solution, fp.rerun(solution)).equal
 
 
 def test_for_functions_of_ones_own_they_must_be_given():
@@ -228,6 +230,7 @@ def test_a_start_of_ones_own_must_be_given():
             return np.ones((n, 2)), np.zeros(n)
 
     paths = sampled(initial=Corner())
+    assert fp.compare(paths, fp.rerun(paths)).equal
     lost = replace(paths, ensemble=replace(paths.ensemble, law=None))
     with pytest.raises(NotRepeatableError, match="`initial` was your own code"):
         fp.rerun(lost)
@@ -235,9 +238,12 @@ def test_a_start_of_ones_own_must_be_given():
 
 
 def test_results_that_do_not_say_how_they_were_made_are_refused():
-    message = "the result does not say how the run began; it was put together "
+    message = "the result does not say how it was computed; it was put together "
     with pytest.raises(NotRepeatableError, match=message):
         fp.rerun(relaxing_solution())
+    message = "the result does not say its `p0`; it was put together by hand"
+    with pytest.raises(NotRepeatableError, match=message):
+        fp.rerun(replace(solved(), initial_density=None))
     old = tables_dataset(ENERGY, 3, 2)
     del old.attrs[CALL]
     with pytest.raises(NotRepeatableError, match="does not say how it was computed"):
@@ -397,7 +403,7 @@ def test_mistakes_of_the_command_are_one_line(fpsolve, tmp_path):
     result = fpsolve("rerun", "missing.nc")
     assert_mistake(result, "`path` must exist to be read, got `missing.nc`.")
     relaxing_solution().save(tmp_path / "old.nc")
-    assert_mistake(fpsolve("rerun", "old.nc"), "the result does not say how the run")
+    assert_mistake(fpsolve("rerun", "old.nc"), "the result does not say how it was")
     message = "`--out` must not be the folder of the file, got `.`; the result"
     assert_mistake(fpsolve("rerun", "old.nc", "--out", "."), message)
     assert files(tmp_path) == ["old.nc"]

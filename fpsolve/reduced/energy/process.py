@@ -34,7 +34,7 @@ _SERIES = ("s", "mass", "relative_entropy", "entropy_dissipation", "minimum")
 
 def _described_start(start: Any, arguments: Mapping[str, Any]) -> Kept:
     """The masses of the start in the cells, which a solution holds."""
-    return Kept("initial_mass", masses_of(start, arguments["grid"]))
+    return Kept("initial_masses", masses_of(start, arguments["grid"]))
 
 
 class EnergyProcess(Coefficients):

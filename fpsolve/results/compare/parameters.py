@@ -42,12 +42,10 @@ def _parameters(attributes: Mapping[str, Any]) -> dict[str, Any]:
     for name, value in about.items():
         if name not in _ORIGIN and not name.endswith("_version"):
             flat.update(_flattened(str(name), value))
-    run = about.get("provenance", {}).get("run", {})
     # What is an attribute of its own need not be named twice.
-    for told, arguments in (("run", run), ("call", call.get("arguments", {}))):
-        own = {key: one for key, one in arguments.items() if key not in attributes}
-        flat.update(_flattened(told, own))
-    return flat
+    asked = call.get("arguments", {}).items()
+    own = {key: one for key, one in asked if key not in attributes}
+    return flat | dict(_flattened("call", own))
 
 
 def _environment(attributes: Mapping[str, Any]) -> dict[str, Any]:

@@ -3,20 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
 
 from fpsolve.density.schemes.dictionaries import scheme_from_dict
-from fpsolve.evolution.call import ARRAY, USER_CODE, Call
+from fpsolve.evolution.call import ARRAY, KEPT, USER_CODE, Call
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.grids.plane import PlaneGrid
 from fpsolve.model.laydown import LayDownModel
 from fpsolve.model.potentials.dictionaries import potential_from_dict
 from fpsolve.paths.law_dataset import law_from_formula
 from fpsolve.paths.laws import DensityLaw
-from fpsolve.results.rerun.missing import own_code
+from fpsolve.results.rerun.missing import own_code, unrecorded
 from fpsolve.spectral.bases.sectors import Sector
 
 __all__ = ["READERS", "OfOwner", "arguments_of"]
@@ -45,55 +46,114 @@ def _scheme(about: Mapping[str, Any]) -> Any:
     return scheme_from_dict(about["scheme"], about["model"], about["grid"])
 
 
+_SCHEME, _MODEL = "$scheme", "$model"
 # What an object is called in a call, and what makes it of its parts.
 READERS: dict[str, Callable[[Any], Any]] = {
     "$potential": potential_from_dict,
-    "$model": LayDownModel.from_dict,
+    _MODEL: LayDownModel.from_dict,
     "$grid": PhaseSpaceGrid.from_dict,
     "$plane": PlaneGrid.from_dict,
     "$law": law_from_formula,
     "$density_law": lambda about: DensityLaw(about["grid"], about["p"]),
     "$sector": lambda about: Sector(**about),
-    "$scheme": _scheme,
+    _SCHEME: _scheme,
     "$seed": _seed,
     "$energy_grid": lambda about: OfOwner("grid", about),
     "$tuple": tuple,
 }
 
 
-def arguments_of(call: Call, given: Mapping[str, Any]) -> dict[str, Any]:
+def arguments_of(
+    call: Call, given: Mapping[str, Any], result: Any = None
+) -> dict[str, Any]:
     """Return the arguments of a call, those that are given in their place.
+
+    For a scheme, its model and its grid may be given as well.
+
+    Parameters
+    ----------
+    call : Call
+    given : mapping
+    result : object, optional
+        The result of the call, which may hold some of them.
 
     Raises
     ------
     NotRepeatableError
         If an argument that is not given was a user's own code.
     """
+    reading = _Reading(call, given, result)
     kept = {
-        name: _read(name, value, call.arrays)
+        name: reading.of(name, value)
         for name, value in call.arguments.items()
         if name not in given
     }
-    return {**kept, **given}
+    own = {name: one for name, one in given.items()
+           if name in call.arguments or name not in reading.used}  # fmt: skip
+    return {**kept, **own}
 
 
-def _read(argument: str, value: Any, arrays: Mapping[str, Any]) -> Any:
-    """Return what `described` described."""
-    if isinstance(value, list):
-        return [_read(argument, one, arrays) for one in value]
-    if not isinstance(value, dict):
-        return value
-    if USER_CODE in value:
-        raise own_code(argument, str(value[USER_CODE]))
-    if ARRAY in value:
-        return arrays[value[ARRAY]]
-    parts = {name: _read(argument, one, arrays) for name, one in value.items()}
-    kind = next(iter(parts), "")
-    if len(parts) > 1 or kind not in READERS:
-        return parts
-    try:
-        return READERS[kind](parts[kind])
-    except KeyError as error:
-        raise own_code(argument, f"without {error}") from None
-    except (ValueError, TypeError) as error:
-        raise own_code(argument, str(error)) from None
+@dataclass
+class _Reading:
+    """What `described` described, read again.
+
+    Attributes
+    ----------
+    used : set of str
+        Those of the given arguments that are parts of a scheme now.
+    """
+
+    call: Call
+    given: Mapping[str, Any]
+    result: Any
+    used: set[str] = field(default_factory=set)
+
+    def of(self, argument: str, value: Any) -> Any:
+        """Return what a value in the call stands for."""
+        if isinstance(value, list):
+            return [self.of(argument, one) for one in value]
+        if not isinstance(value, dict):
+            return value
+        if KEPT in value:
+            return self._kept(argument, value)
+        if USER_CODE in value:
+            raise own_code(argument, str(value[USER_CODE]))
+        if ARRAY in value:
+            return self.call.arrays[value[ARRAY]]
+        kind = next(iter(value), "")
+        if kind == _SCHEME and isinstance(value[kind], dict):
+            return self._made(kind, argument, self._parts_of_scheme(value[kind]))
+        parts = {name: self.of(argument, one) for name, one in value.items()}
+        if len(parts) > 1 or kind not in READERS:
+            return parts
+        return self._made(kind, argument, parts[kind])
+
+    def _parts_of_scheme(self, about: Mapping[str, Any]) -> dict[str, Any]:
+        self.used |= about.keys() & self.given.keys()
+        return {name: self.given[name] if name in self.given else self.of(name, one)
+                for name, one in about.items()}  # fmt: skip
+
+    def _kept(self, argument: str, value: Mapping[str, Any]) -> Any:
+        """What the result holds; a user's own code only until it is written."""
+        try:
+            held = attrgetter(str(value[KEPT]))(self.result)
+        except AttributeError:
+            held = None
+        code = USER_CODE in value
+        if isinstance(held, np.ndarray) or (code and held is not None):
+            return held
+        if code:
+            raise own_code(argument, str(value[USER_CODE]))
+        raise unrecorded(f"its `{argument}`", f"`{self.call.function}`")
+
+    def _made(self, kind: str, argument: str, about: Any) -> Any:
+        try:
+            return READERS[kind](about)
+        except KeyError as error:
+            raise own_code(argument, f"without {error}") from None
+        except (ValueError, TypeError) as error:
+            known = getattr(self.result, "model", None)
+            # What was not written to a file yet may have a user's functions.
+            if kind == _MODEL and known is not None:
+                return known
+            raise own_code(argument, str(error)) from None

@@ -9,7 +9,7 @@ from typing import Any
 
 from fpsolve._support.checks import shown
 from fpsolve.errors import NotRepeatableError
-from fpsolve.evolution.call import WHERE, Call
+from fpsolve.evolution.call import Call
 from fpsolve.results.kinds import KINDS, kind_of, named
 from fpsolve.results.rerun.arguments import OfOwner, arguments_of
 from fpsolve.results.rerun.costs import check_call
@@ -18,15 +18,14 @@ from fpsolve.results.rerun.missing import unrecorded
 __all__ = ["repeat_call"]
 
 # What the command line adds.
-_NOTES = ("command", "configuration")
+_NOTES = ("command", "configuration", "suggested")
 
 
 def repeat_call(result: Any, overrides: dict[str, Any]) -> Any:
     """Call the function of a result as it was called, with the overrides."""
     place = KINDS[kind_of(result)].function
     name = place.partition(":")[2] if isinstance(place, str) else place.__qualname__
-    is_study = hasattr(result, "data_vars")
-    call = Call.from_xarray(result) if is_study else result.call
+    call = _call_of(result)
     if call is None:
         raise unrecorded("how it was computed", f"`{name}`")
     if call.function != name:
@@ -34,12 +33,9 @@ def repeat_call(result: Any, overrides: dict[str, Any]) -> Any:
             f"the result must be made by {name} to be repeated, got "
             f"{call.function!r}; update fpsolve."
         )
-    arguments = arguments_of(call, overrides)
+    arguments = arguments_of(call, overrides, result)
     check_call(name, arguments, result, overrides)
-    again = _called(place, arguments, overrides)
-    if overrides.keys() - WHERE:
-        return again
-    return _noted(result, again)
+    return _noted(result, _called(place, arguments, overrides), call)
 
 
 def _called(
@@ -76,8 +72,18 @@ def _known(
     return arguments
 
 
-def _noted(old: Any, new: Any) -> Any:
-    """The new result with what a command wrote beside the old one."""
+def _call_of(result: Any) -> Call | None:
+    if hasattr(result, "data_vars"):
+        return Call.from_xarray(result)
+    call: Call | None = result.call
+    return call
+
+
+def _noted(old: Any, new: Any, call: Call) -> Any:
+    """The new result, if of the same call with what a command wrote beside it."""
+    again = _call_of(new)
+    if again is None or again.arguments != call.arguments:
+        return new
     if hasattr(old, "data_vars"):
         return new.assign_attrs({n: old.attrs[n] for n in _NOTES if n in old.attrs})
     notes = {n: old.provenance[n] for n in _NOTES if n in old.provenance}

@@ -18,57 +18,15 @@ from fpsolve.errors import NotRepeatableError
 if TYPE_CHECKING:
     import xarray as xr
 
-    from fpsolve.paths.result import Paths
-
-__all__ = ["check_call", "check_paths", "check_run"]
+__all__ = ["check_call"]
 
 # Seconds that a step takes for a cell, or a path, at the very least.
 _FASTEST = 1e-10
 _LONGEST = 30 * 86400.0
 # Arguments that decide the number of steps.
-_DECISIVE = ("s_span", "ds", "save_at", "record_every", "extrapolate")
+_DECISIVE = {"s_span", "s_start", "s_end", "ds", "save_at", "record_every",
+             "extrapolate", "n_paths"}  # fmt: skip
 _SAME = 1e-6
-
-
-def check_run(result: Any, run: Mapping[str, Any], given: Collection[str]) -> None:
-    """Raise NotRepeatableError unless a run takes the steps that its result shows.
-
-    Parameters
-    ----------
-    result : Solution, HydrodynamicSolution or EnergySolution
-    run : mapping
-        Arguments of `solve`.
-    given : collection of str
-        Names of arguments that the caller chose instead; those are not looked at.
-    """
-    if any(name in given for name in _DECISIVE):
-        return
-    span, ds = run.get("s_span", ()), run.get("ds", 0.0)
-    if not (_are_numbers(*_listed(span), ds) and len(span) == 2 and ds > 0):
-        raise _refused("`s_span` and `ds`", f"{span} and {ds}", "two numbers, a step")
-    n_steps = abs(span[1] - span[0]) / ds
-    passes = 3 if run.get("extrapolate") else 1
-    _check_time(n_steps * passes, result.grid.n_cells, "steps of all cells")
-    finished = result.status == "finished"
-    _check_records(result, run, n_steps, finished)
-    # A scheme of the caller's own need not count.
-    told = None if "scheme" in given else result.provenance.get("n_steps")
-    if finished and told is not None and abs(told - passes * n_steps) > 1:
-        raise _refused("`ds`", f"{passes * n_steps:.6g} steps", f"{told} steps")
-
-
-def check_paths(paths: Paths, given: Collection[str]) -> None:
-    """Raise NotRepeatableError unless paths take the steps that their result tells."""
-    if {"n_paths", "s_end", "s_start", "ds", "save_at"} & set(given):
-        return
-    ensemble = paths.ensemble
-    asked = paths.provenance.get("asked", {})
-    n_paths = asked.get("n_paths", ensemble.n_paths)
-    n_steps = asked.get("n_steps", ensemble.schedule.n_steps) - ensemble.first_step
-    _check_time(float(n_steps), n_paths, "steps of all paths")
-    told = paths.provenance.get("n_steps")
-    if not asked and told not in (None, n_paths * n_steps):
-        raise _refused("`n_steps`", f"{n_paths * n_steps} in all", f"{told}")
 
 
 def check_call(
@@ -83,10 +41,10 @@ def check_call(
     result : object
         A study, or what has `to_xarray`.
     given : collection of str
-        Names of arguments that the caller chose instead.
+        Names of arguments that the caller chose instead; those are not looked at.
     """
-    if function in _RUNS:
-        check_run(result, arguments, given)
+    if function in _STEPPING and not _DECISIVE & set(given):
+        _check_steps(result, arguments, given)
     read = _HELD.get(function)
     if read is None:
         return
@@ -111,6 +69,26 @@ def _check_time(n_steps: float, n_each: int, what: str) -> None:
         )
 
 
+def _check_steps(result: Any, asked: Mapping[str, Any], given: Collection[str]) -> None:
+    """Raise NotRepeatableError unless a run takes the steps that its result shows."""
+    are_paths, passes = "n_paths" in asked, 3 if asked.get("extrapolate") else 1
+    span, ds = asked.get("s_span", ()), asked.get("ds", 0.0)
+    if are_paths:
+        span, passes = (asked.get("s_start"), asked.get("s_end")), asked["n_paths"]
+    if not (_are_numbers(*_listed(span), ds, passes) and len(span) == 2 and ds > 0):
+        raise _refused("`s_span` and `ds`", f"{span} and {ds}", "two numbers, a step")
+    n_steps, finished = abs(span[1] - span[0]) / ds, result.status == "finished"
+    if are_paths:
+        _check_time(n_steps, passes, "steps of all paths")
+    else:
+        _check_time(n_steps * passes, result.grid.n_cells, "steps of all cells")
+        _check_records(result, asked, n_steps, finished)
+    # A scheme of the caller's own need not count.
+    told = None if "scheme" in given else result.provenance.get("n_steps")
+    if finished and told is not None and abs(told - passes * n_steps) > 1:
+        raise _refused("`ds`", f"{passes * n_steps:.6g} steps", f"{told} steps")
+
+
 def _listed(value: Any) -> tuple[Any, ...]:
     return tuple(value) if isinstance(value, list | tuple) else (value,)
 
@@ -124,12 +102,12 @@ def _check_records(
     result: Any, run: Mapping[str, Any], n_steps: float, finished: bool
 ) -> None:
     s = result.series["s"]
-    saves, every = _listed(run.get("save_at") or ()), run.get("record_every", 1)
+    n_saves, every = np.size(run.get("save_at", ())), run.get("record_every", 1)
     if not _are_numbers(every):
         raise _refused("`record_every`", str(every), "a number")
     fewest = n_steps / max(every, 1)
     held = s.size - 1
-    if not held <= fewest + len(saves) + 1 or (finished and not fewest <= held + 1):
+    if not held <= fewest + n_saves + 1 or (finished and not fewest <= held + 1):
         raise _refused("`record_every`", f"{fewest + 1:.6g} records", f"{s.size}")
     ends, found = run["s_span"], (s[0], s[-1]) if s.size else ()
     if finished and not (found and np.allclose(found, ends, rtol=_SAME)):
@@ -208,8 +186,8 @@ def _of_tables(dataset: xr.Dataset, about: Mapping[str, Any]) -> Held:
     yield "noise", about.get("noise")
 
 
-# Functions that step, of which the series show how often.
-_RUNS = ("HydrodynamicLimit.solve", "EnergyProcess.solve")
+# Functions that step, of which the result tells how often.
+_STEPPING = ("solve", "sample_paths", "HydrodynamicLimit.solve", "EnergyProcess.solve")
 # Of every function what its dataset holds of its arguments.
 _HELD: dict[str, Callable[[Any, Mapping[str, Any]], Held]] = {
     "rate_versus_noise": _of_rates,

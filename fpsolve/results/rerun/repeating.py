@@ -6,7 +6,6 @@ import warnings
 from typing import Any
 
 from fpsolve.errors import NotRepeatableError, RunError
-from fpsolve.results.kinds import KINDS, kind_of, named
 from fpsolve.results.load import opened
 from fpsolve.results.rerun.calls import repeat_call
 
@@ -50,10 +49,8 @@ def rerun(result: Any, **overrides: Any) -> Any:
             result = opened(result)
     except TypeError as error:
         raise NotRepeatableError(f"{error} Call its function again.") from None
-    special = KINDS[kind_of(result)].repeating
-    repeat = named(special) if special else repeat_call
     try:
-        return repeat(result, overrides)
+        return repeat_call(result, overrides)
     except RunError as error:
         if getattr(result, "status", "") == "failed" and error.solution is not None:
             return error.solution
