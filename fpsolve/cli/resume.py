@@ -73,7 +73,7 @@ def _resume_configured(
     config = read_config(text, f"the configuration in `{directory}`")
     if not frame.figures:
         config = config.without_figures()
-    p0, _ = read_start(directory, manifest.run)
+    p0 = read_start(directory, manifest.run)["p0"]
     problem = config.build(saved_in_memory=False)._replace(p0=p0)
     checkpoint = Checkpoint(directory, manifest.every, manifest.notes)
     solve_and_write(frame, problem, config, checkpoint, keep)

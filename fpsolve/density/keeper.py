@@ -13,11 +13,10 @@ from fpsolve.evolution.schedule import Schedule
 __all__ = ["MemoryKeeper", "MemoryKeepers"]
 
 Array = NDArray[np.float64]
-Row = dict[str, float]
 
 
 class MemoryKeeper:
-    """What a pass does with its records; here it holds them, and nothing more.
+    """What a pass does with saved densities; here it holds them, and nothing more.
 
     Parameters
     ----------
@@ -47,9 +46,6 @@ class MemoryKeeper:
         self.kept[self.n_saved] = p
         self.n_saved += 1
 
-    def absorb(self, rows: list[Row]) -> None:
-        """Take rows out of memory that are kept elsewhere."""
-
     def after(self, run: Pass) -> None:
         """Do what is to be done after a record."""
 
@@ -59,10 +55,6 @@ class MemoryKeeper:
     def interrupted(self, run: Pass) -> str:
         """Do what is to be done after Ctrl-C; what is to be said of it."""
         return ""
-
-    def series(self, columns: tuple[str, ...], rows: list[Row]) -> dict[str, Array]:
-        """All records as arrays."""
-        return {name: np.array([row[name] for row in rows]) for name in columns}
 
     def densities(self) -> Any:
         """The saved densities; shape (n_saved, n1, n2, n_alpha)."""

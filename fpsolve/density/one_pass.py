@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +10,7 @@ from numpy.typing import NDArray
 from fpsolve._support.provenance import Stopwatch
 from fpsolve.density.recorder import Recorder
 from fpsolve.density.schemes.scheme import Scheme
-from fpsolve.density.snapshot import Snapshot, fields_of, rows_to_array
+from fpsolve.density.snapshot import Snapshot, fields_of
 from fpsolve.evolution.schedule import Schedule
 from fpsolve.evolution.series import Series
 
@@ -45,37 +44,22 @@ class Pass:
         self.step, self.settled = 0, False
         self.watch = Stopwatch()
 
-    def snapshot(self, n_saved: int, n_stored: int) -> Snapshot:
-        """Return what is needed to go on from here.
-
-        Parameters
-        ----------
-        n_saved, n_stored : int
-            Densities and rows that are kept elsewhere.
-        """
-        recorder = self.recorder
-        columns = tuple(recorder.first)
+    def snapshot(self, n_saved: int) -> Snapshot:
+        """Return what is needed to go on from here, with so many densities saved."""
         return Snapshot(
             step=self.step,
             s=self.schedule.s(self.step),
             n_saved=n_saved,
-            n_stored=n_stored,
             seconds=self.watch.seconds(),
-            columns=columns,
-            first=rows_to_array([recorder.first], columns)[0],
-            tail=rows_to_array(recorder.rows, columns),
+            columns=self.recorder.columns,
+            records=self.recorder.table(),
             state=fields_of(self.state),
         )
 
     def restore(self, snapshot: Snapshot) -> None:
         """Go to where a snapshot was taken."""
-        snapshot.restore(self.state)
-        columns = snapshot.columns
-
-        def row(values: Any) -> dict[str, float]:
-            return dict(zip(columns, values, strict=True))
-
-        self.recorder.first = row(snapshot.first.tolist())
-        self.recorder.rows = [row(values) for values in snapshot.tail.tolist()]
+        for name, value in snapshot.state.items():
+            setattr(self.state, name, value)
+        self.recorder.go_on(snapshot.columns, snapshot.records)
         self.watch.add(*snapshot.seconds)
         self.step = snapshot.step

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 import warnings
+from array import array
 from collections.abc import Mapping, Sequence
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -162,9 +162,9 @@ class Recorder:
         if self.inverse is not None and given is None:
             self.uncounted = uncounted(model.potential, grid, self.ratio)
             self._check_mass(total)
-        # The first record stays when a caller takes `rows` elsewhere.
         self.first: dict[str, float] = {}
-        self.rows: list[dict[str, float]] = []
+        # All records, one after the other: 8 bytes a number.
+        self.numbers = array("d")
 
     def record(
         self, p: Array, s: float, told: Mapping[str, float] | None = None
@@ -190,7 +190,7 @@ class Recorder:
         if not self.first:
             self._check_entropy(values["relative_entropy"], found.sums)
         self.first = self.first or values
-        self.rows.append(values)
+        self.numbers.extend(values[name] for name in self.first)
         return values
 
     @staticmethod
@@ -231,9 +231,11 @@ class Recorder:
         self.lowest = min(self.lowest, entropy)
         return entropy - self.lowest
 
-    def go_on(self, series: Mapping[str, Array]) -> None:
-        """Continue after the records in `series`, which were made elsewhere."""
-        entropies = series["relative_entropy"]
+    def go_on(self, columns: Sequence[str], table: Array) -> None:
+        """Continue after the records of a `table`, which were made elsewhere."""
+        self.first = dict(zip(columns, table[0].tolist(), strict=True))
+        self.numbers = array("d", table.tobytes())
+        entropies = self.series()["relative_entropy"]
         self.lowest = float(np.fmin.reduce(entropies, initial=math.inf))
 
     def floor(self) -> float:
@@ -248,6 +250,11 @@ class Recorder:
         """Names of what is recorded."""
         return tuple(self.first) or ALWAYS
 
-    def series(self) -> dict[str, Any]:
+    def table(self) -> Array:
+        """The records, shape (n_records, n_columns)."""
+        return np.array(self.numbers).reshape(-1, len(self.columns))
+
+    def series(self) -> dict[str, Array]:
         """The records as arrays, one entry per recorded step."""
-        return {key: np.array([row[key] for row in self.rows]) for key in self.columns}
+        columns = np.ascontiguousarray(self.table().T)
+        return {name: columns[k].copy() for k, name in enumerate(self.columns)}

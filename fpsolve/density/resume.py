@@ -11,9 +11,13 @@ from fpsolve._support.progress import ProgressCallback
 from fpsolve.density.checkpoints.checkpoint import Checkpoint
 from fpsolve.density.checkpoints.manifest import read_manifest
 from fpsolve.density.checkpoints.start import read_start
+from fpsolve.density.schemes.dictionaries import scheme_from_dict
+from fpsolve.density.schemes.scheme import Scheme
 from fpsolve.density.solution import Solution
 from fpsolve.density.solve import solve
 from fpsolve.errors import FileFormatError
+from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.model.laydown import LayDownModel
 
 __all__ = ["resume"]
 
@@ -55,10 +59,10 @@ def resume(
     """
     folder = check_path("directory", directory)
     manifest = read_manifest(folder)
-    p0, reference = read_start(folder, manifest.run)
+    arrays = read_start(folder, manifest.run)
     try:
-        _check_own(manifest.run.arguments)
-        scheme = manifest.run.build_scheme()
+        _check_own(manifest.run)
+        scheme = _scheme(manifest.run["scheme"]["$scheme"])
     except ValueError as error:
         reason = str(error).rstrip(".")
         raise ValueError(
@@ -69,10 +73,7 @@ def resume(
     except TypeError as error:
         raise FileFormatError(folder, str(error).rstrip(".")) from None
     return solve(
-        scheme,
-        p0,
-        **manifest.run.arguments,
-        reference=reference,
+        **{**manifest.run, **arrays, "scheme": scheme},
         progress=progress,
         memory_limit=memory_limit,
         checkpoint=Checkpoint(
@@ -81,8 +82,15 @@ def resume(
     )
 
 
-def _check_own(arguments: Mapping[str, Any]) -> None:
+def _scheme(about: Mapping[str, Any]) -> Scheme:
+    """The scheme with its model and grid; ValueError if one is a user's own code."""
+    model = LayDownModel.from_dict(about["model"]["$model"])
+    grid = PhaseSpaceGrid.from_dict(about["grid"]["$grid"])
+    return scheme_from_dict(about["scheme"], model, grid)
+
+
+def _check_own(run: Mapping[str, Any]) -> None:
     """Raise ValueError if the run recorded numbers of the caller's own."""
-    if arguments.get("observe"):
-        names = ", ".join(map(repr, arguments["observe"]))
+    if run.get("observe"):
+        names = ", ".join(map(repr, run["observe"]))
         raise ValueError(f"`observe` must not hold functions of your own, got {names}")

@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fpsolve._support.progress import ProgressCallback
-from fpsolve.density.description import describe_scheme
 from fpsolve.density.keeper import MemoryKeeper
 from fpsolve.density.one_pass import Pass
+from fpsolve.density.schemes.dictionaries import describe_scheme
 from fpsolve.density.schemes.scheme import Scheme
 from fpsolve.density.solution import Solution
 from fpsolve.density.tolerances import Tolerances, check_laws
@@ -89,9 +89,6 @@ class Run(Pass):
         """Record the start, or go to where the run was left."""
         if not self.keeper.begin(self):
             self._record(0)
-        else:
-            kept = self.keeper.series(self.recorder.columns, self.recorder.rows)
-            self.recorder.go_on(kept)
         self.settled = True
 
     def _legs(self) -> Iterator[tuple[int, int]]:
@@ -115,7 +112,6 @@ class Run(Pass):
         if step in self.saves:
             self.keeper.save(p)
         self._check(values)
-        self.keeper.absorb(self.recorder.rows)
 
     def _check_finite(self, p: Array, s: float) -> None:
         # A sum is finite unless a cell is not, or the values are about to overflow.
@@ -159,7 +155,7 @@ class Run(Pass):
             grid=self.scheme.grid,
             scheme=describe_scheme(self.scheme),
             ds=self.schedule.ds,
-            series=self.keeper.series(recorder.columns, recorder.rows),
+            series=recorder.series(),
             saved_s=np.array([self.schedule.s(step) for step in saves]),
             densities=self.keeper.densities(),
             entropy_floor=recorder.floor(),

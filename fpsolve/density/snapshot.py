@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from fpsolve.density.schemes.form import State
 
-__all__ = ["Snapshot", "fields_of", "rows_to_array"]
+__all__ = ["Snapshot", "fields_of"]
 
 Array = NDArray[np.float64]
 
@@ -27,15 +27,14 @@ class Snapshot:
     step : int
         Steps done; a recorded one.
     s : float
-    n_saved, n_stored : int
-        Densities and rows that belong to it in the store; what is beyond is not
-        part of this checkpoint.
+    n_saved : int
+        Densities that belong to it in the store; what is beyond is not part of this
+        checkpoint.
     seconds : (float, float)
         Wall and CPU time spent so far.
     columns : tuple of str
         Names of the recorded quantities.
-    first, tail : ndarray, shapes (n_columns,) and (n, n_columns)
-        The first record, and those that are not in the store.
+    records : ndarray, shape (n_records, n_columns)
     state : dict
         Fields of the scheme's state.
     """
@@ -43,17 +42,10 @@ class Snapshot:
     step: int
     s: float
     n_saved: int
-    n_stored: int
     seconds: tuple[float, float]
     columns: tuple[str, ...]
-    first: Array
-    tail: Array
+    records: Array
     state: dict[str, Any]
-
-    def restore(self, state: State) -> None:
-        """Give a state these values."""
-        for name, value in self.state.items():
-            setattr(state, name, value)
 
 
 def fields_of(state: State) -> dict[str, Any]:
@@ -63,10 +55,3 @@ def fields_of(state: State) -> dict[str, Any]:
         for field in fields(state)
         if field.name not in _NOT_KEPT
     }
-
-
-def rows_to_array(rows: list[dict[str, float]], columns: tuple[str, ...]) -> Array:
-    """Rows as an array of shape (n, n_columns)."""
-    return np.array([[row[name] for name in columns] for row in rows]).reshape(
-        -1, len(columns)
-    )

@@ -18,15 +18,11 @@ from fpsolve._support.memory import check_memory, required_memory
 from fpsolve._support.progress import ProgressCallback, reporting
 from fpsolve._support.provenance import announced_compilation
 from fpsolve.density.checkpoints.checkpoint import Checkpoint, as_checkpoint
-from fpsolve.density.description import (
-    RunDescription,
-    described_scheme,
-    run_arguments,
-)
 from fpsolve.density.extrapolation import extrapolated
 from fpsolve.density.keeper import MemoryKeepers
 from fpsolve.density.observed import Observe, described_observed, observed_series
 from fpsolve.density.run import Run
+from fpsolve.density.schemes.dictionaries import described_scheme
 from fpsolve.density.schemes.scheme import Scheme, checked_scheme, checked_start
 from fpsolve.density.solution import Solution
 from fpsolve.density.tolerances import Tolerances
@@ -109,8 +105,8 @@ def solve(
     checkpoint : Checkpoint or path, optional
         Folder in which the run keeps what it needs to go on after a kill, by default
         every minute. If it holds a checkpoint of the same run, that one goes on: the
-        result is bitwise that of an uninterrupted run. Records and saved densities
-        are then on the disk, and `densities` of the result are read from the folder
+        result is bitwise that of an uninterrupted run. Saved densities are then on
+        the disk, and `densities` of the result are read from the folder
         when they are asked for: keep it as long as you use them. See `resume`.
     observe : mapping of callables, optional
         Numbers of your own: ``observe={"returning": f}`` records ``f(p, grid)`` with
@@ -163,20 +159,22 @@ def solve(
         scheme.grid.nbytes, scheme.n_arrays + float(extrapolate), n_kept, extrapolate
     )
     check_memory(required, memory_limit)
-    arguments = run_arguments(
-        s_span, ds, save_at, record_every=record_every, extrapolate=extrapolate,
-        **allowed,
-    )  # fmt: skip
-    told = described_observed(observe, checkpoint is not None)
     call = Call.of("solve", {
-        "scheme": described_scheme(scheme), "p0": Kept("initial_density", p0),
+        "scheme": described_scheme(scheme),
+        "p0": Kept("initial_density", p0),
+        "s_span": [float(s) for s in s_span],
+        "ds": float(ds),
+        "save_at": save_at,
+        "extrapolate": extrapolate,
+        **{name: float(value) for name, value in allowed.items()},
         "reference": None if reference is None else Kept("reference", reference),
-        "observe": told, **arguments,
+        "record_every": int(record_every),
+        "observe": described_observed(observe, checkpoint is not None),
     })  # fmt: skip
-    arguments |= {"observe": told} if told else {}
+    arrays = {"p0": p0, "reference": reference, "save_at": save_at}
     with (
         threads_worth_their_wait(p0.size),
-        _keepers(checkpoint, scheme, p0, reference, arguments) as keepers,
+        _keepers(checkpoint, call, scheme, arrays, schedule) as keepers,
         reporting(progress) as report,
         announced_compilation(bool(progress)),
     ):
@@ -207,16 +205,17 @@ def _completed(
 
 def _keepers(
     checkpoint: Checkpoint | str | os.PathLike[str] | None,
+    call: Call,
     scheme: Scheme,
-    p0: Array,
-    reference: Array | None,
-    arguments: Mapping[str, Any],
+    arrays: Mapping[str, Any],
+    schedule: Schedule,
 ) -> AbstractContextManager[MemoryKeepers | CheckpointFolder]:
     """What hands out the keepers of the passes."""
     if checkpoint is None:
         return nullcontext(MemoryKeepers(scheme.grid.shape))
     # zarr and its locks are loaded for those who ask for them.
     from fpsolve.density.checkpoints.folder import opened_folder
+    from fpsolve.density.checkpoints.identity import identified
 
-    run = RunDescription.of(scheme, p0, reference, arguments)
-    return opened_folder(as_checkpoint(checkpoint), run, p0, reference)
+    run = identified(call, scheme, arrays["p0"], schedule)
+    return opened_folder(as_checkpoint(checkpoint), run, arrays)

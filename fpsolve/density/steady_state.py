@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from fpsolve._support.blas import one_blas_thread
 from fpsolve._support.checks import check_flag, check_tolerance
-from fpsolve.density.description import described_scheme
 from fpsolve.density.schemes import drift_kick
+from fpsolve.density.schemes.dictionaries import described_scheme
 from fpsolve.density.schemes.drift_kick import DriftKick
 from fpsolve.density.schemes.scheme import Scheme, checked_scheme
 from fpsolve.density.stationary.at_rest import at_rest

@@ -26,7 +26,7 @@ __all__ = [
 TYPED, OF_A_STEP, ROUNDED = 5e-6, 1e-3, 8 * 2.0**-52
 # Beyond this many steps s = start + n ds is no longer a different number for each n.
 MOST_STEPS = 2**53
-# Each takes about two kilobytes.
+# Each takes some 120 bytes.
 MOST_RECORDS = 10**7
 
 

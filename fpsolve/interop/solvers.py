@@ -169,7 +169,7 @@ class Stepper:
         check_density(p, self.reached, self.mass, self.scheme, self.tolerances)
         check_correction(self.state, self.reached, self.scheme)
         check_laws(self.recorder.record(p, self.reached), self.tolerances)
-        self.recorder.rows.clear()
+        del self.recorder.numbers[:]
         self.info |= {"mass_correction": self.state.correction, **self.state.report}
         field.data[...] = p
         self.shown = p.copy()

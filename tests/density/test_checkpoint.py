@@ -22,7 +22,6 @@ from checkpoint_runs import (
 
 import fpsolve as fp
 from fpsolve._support import durable
-from fpsolve.density.checkpoints import store
 from fpsolve.density.checkpoints.status import status_of
 from fpsolve.density.schemes import drift_kick
 from fpsolve.density.solve import solve
@@ -37,10 +36,8 @@ def no_waiting_for_the_disk(unsynced):
 @pytest.mark.parametrize("extrapolate", [False, True])
 @pytest.mark.parametrize("name", SCHEMES)
 def test_a_run_killed_at_any_record_ends_with_the_same_bits(
-    tmp_path, monkeypatch, name, extrapolate
+    tmp_path, name, extrapolate
 ):
-    # Several chunks of rows are written, and the last one is not full.
-    monkeypatch.setattr(store, "ROWS", 3)
     options = {"scheme": SCHEMES[name], "extrapolate": extrapolate}
     whole = run(**options)
     for step in range(0, whole.provenance["n_steps"] + 1, 7 if extrapolate else 3):
@@ -53,7 +50,6 @@ def test_a_run_killed_at_any_record_ends_with_the_same_bits(
 def test_a_run_killed_in_the_midst_of_any_write_ends_with_the_same_bits(
     tmp_path, monkeypatch, extrapolate
 ):
-    monkeypatch.setattr(store, "ROWS", 3)
     whole = run(extrapolate=extrapolate)
     n_syncs = 0
 
@@ -208,8 +204,7 @@ def test_one_run_at_a_time_writes_to_a_folder(tmp_path):
     run(tmp_path / "run")
 
 
-def test_saved_densities_and_rows_do_not_stay_in_memory(tmp_path, monkeypatch):
-    monkeypatch.setattr(store, "ROWS", 4)
+def test_saved_densities_do_not_stay_in_memory(tmp_path):
     grid = fp.PhaseSpaceGrid(6.0, (24, 24, 16))
     p0 = fp.initial.gaussian(grid, (0.5, 0.0), 0.8, 0.0, 1.0)
     scheme = drift_kick(MODEL, grid)

@@ -10,8 +10,7 @@ from malformed import files as table
 from malformed.stores import without
 
 import fpsolve as fp
-from fpsolve.density.checkpoints import store
-from fpsolve.errors import CheckpointError, FileFormatError, FpsolveError
+from fpsolve.errors import FileFormatError, FpsolveError
 
 # validation/reliability/flipped_bytes.py does this hundreds of times.
 N_FLIPS = 12
@@ -70,9 +69,7 @@ def test_a_saved_result_is_what_it_was_or_refused(ending, tmp_path, rng):
         )
 
 
-def test_a_checkpoint_gives_the_result_or_is_refused(tmp_path, rng, monkeypatch):
-    # A chunk of the series for every two records.
-    monkeypatch.setattr(store, "ROWS", 2)
+def test_a_checkpoint_gives_the_result_or_is_refused(tmp_path, rng):
     options = {"save_at": tuple(np.arange(9) / 8)}
     intact, whole = left_at(7, tmp_path / "run", **options), run(**options)
     n_exact = 0
@@ -92,12 +89,11 @@ def chunk(folder, name):
     return folder / "output.zarr" / "pass-1" / name
 
 
-@pytest.mark.parametrize("place", ["density/3.0.0.0", "series/1.0"])
-def test_a_damaged_chunk_is_told_and_computed_again(place, tmp_path, rng, monkeypatch):
-    monkeypatch.setattr(store, "ROWS", 2)
+@pytest.mark.parametrize("number", [0, 3])
+def test_a_damaged_chunk_is_told_and_computed_again(number, tmp_path, rng):
     options = {"save_at": tuple(np.arange(9) / 8)}
     folder = left_at(7, tmp_path / "run", **options)
-    flipped(chunk(folder, place), rng)
+    flipped(chunk(folder, f"density/{number}.0.0.0"), rng)
     with pytest.warns(UserWarning, match="output that belongs to it is missing or dam"):
         assert_same_bits(fp.resume(folder), run(**options))
 
@@ -113,21 +109,6 @@ def test_damaged_metadata_of_an_array_are_told_and_made_again(old, new, tmp_path
     path.write_bytes(path.read_bytes().replace(old, new, 1))
     with pytest.warns(UserWarning, match="output that belongs to it is missing or dam"):
         assert_same_bits(fp.resume(folder), run(**options))
-
-
-def test_a_chunk_that_is_hit_while_the_run_goes_on_is_a_checkpoint_error(
-    tmp_path, rng, monkeypatch
-):
-    monkeypatch.setattr(store, "ROWS", 2)
-    folder = tmp_path / "run"
-
-    def hit(n_done, n_total, s):
-        if n_done == 6:
-            flipped(chunk(folder, "series/0.0"), rng)
-
-    message = r"series` cannot be read: it is damaged \(.*\); the last good one, at s ="
-    with pytest.raises(CheckpointError, match=message):
-        run(folder, progress=hit)
 
 
 def test_a_manifest_is_protected_as_a_whole(tmp_path):

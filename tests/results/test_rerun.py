@@ -12,7 +12,7 @@ from solutions import relaxing_solution
 import fpsolve as fp
 from fpsolve import studies
 from fpsolve._support.netcdf import read_dataset, write_dataset
-from fpsolve.density.description import described_scheme
+from fpsolve.density.schemes.dictionaries import described_scheme
 from fpsolve.errors import NotRepeatableError, RunInterrupted
 from fpsolve.evolution.call import CALL, Call
 from fpsolve.paths import DensityLaw, GaussianLaw

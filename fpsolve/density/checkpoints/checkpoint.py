@@ -18,8 +18,8 @@ class Checkpoint:
     """Where a run keeps what it needs to go on after a kill, and how often.
 
     A checkpoint is written once in every interval, at a record; at the end; and
-    when Ctrl-C is pressed. Records and saved densities go to the folder as they come
-    and do not stay in memory.
+    when Ctrl-C is pressed. Saved densities go to the folder as they come and do not
+    stay in memory.
 
     Parameters
     ----------

@@ -3,26 +3,25 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from fnmatch import fnmatch
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fpsolve._support.durable import DRAFT, sync
 from fpsolve._support.interrupts import deferred_interrupts
 from fpsolve._support.locks import LOCK, locked
 from fpsolve._support.provenance import versions
 from fpsolve.density.checkpoints.checkpoint import Checkpoint
+from fpsolve.density.checkpoints.identity import differing_arguments, digest_of_run
 from fpsolve.density.checkpoints.keeper import CheckpointKeeper
 from fpsolve.density.checkpoints.manifest import MANIFEST, Manifest, read_manifest
 from fpsolve.density.checkpoints.snapshots import SnapshotFiles
-from fpsolve.density.checkpoints.start import START, write_start
+from fpsolve.density.checkpoints.start import STORE, digested, write_start
 from fpsolve.density.checkpoints.store import PassStore
-from fpsolve.density.description import RunDescription
 from fpsolve.errors import CheckpointError, CheckpointMismatchError
 from fpsolve.evolution.schedule import Schedule
 
@@ -31,13 +30,10 @@ if TYPE_CHECKING:
 
 __all__ = ["CheckpointFolder", "opened_folder", "remove_folder"]
 
-Array = NDArray[np.float64]
-
-_STORE = "output.zarr"
 _TITLE = "Records and saved densities of a run of fpsolve that is not complete"
 # Patterns of what the folder holds while it has no `run.json`: it is being made, or
 # removed.
-_OWN = (LOCK, START, f"*{DRAFT}", "pass-?-?.npz", _STORE)
+_OWN = (LOCK, f"*{DRAFT}", "pass-?-?.npz", STORE)
 # What zarr calls a file until it is complete.
 _PARTIAL = "*.partial"
 
@@ -48,7 +44,7 @@ class CheckpointFolder:
     def __init__(
         self,
         checkpoint: Checkpoint,
-        run: RunDescription,
+        run: Mapping[str, Any],
         shape: tuple[int, ...],
         raise_if_interrupted: Callable[[], None],
     ) -> None:
@@ -60,13 +56,8 @@ class CheckpointFolder:
         folder = self.checkpoint.folder
         return CheckpointKeeper(
             folder,
-            PassStore(
-                folder / _STORE / name,
-                len(schedule.records),
-                len(schedule.saves),
-                self.shape,
-            ),
-            SnapshotFiles(folder, name, self.run.digest),
+            PassStore(folder / STORE / name, len(schedule.saves), self.shape),
+            SnapshotFiles(folder, name, digest_of_run(self.run)),
             self.checkpoint.interval,
             self.raise_if_interrupted,
         )
@@ -74,9 +65,17 @@ class CheckpointFolder:
 
 @contextmanager
 def opened_folder(
-    checkpoint: Checkpoint, run: RunDescription, p0: Array, reference: Array | None
+    checkpoint: Checkpoint, run: Mapping[str, Any], arrays: Mapping[str, Any]
 ) -> Iterator[CheckpointFolder]:
     """Make the folder of a run, or open it if it is of the same run.
+
+    Parameters
+    ----------
+    checkpoint : Checkpoint
+    run : mapping
+        What `identified` says of it.
+    arrays : mapping
+        Its arguments that are arrays.
 
     Raises
     ------
@@ -97,10 +96,10 @@ def opened_folder(
             folder.mkdir(parents=True, exist_ok=True)
             stack.enter_context(locked(folder))
             if not (folder / MANIFEST).exists():
-                _make(checkpoint, run, p0, reference)
+                _make(checkpoint, run, arrays)
         _check_same(folder, run)
         interrupt = stack.enter_context(deferred_interrupts())
-        yield CheckpointFolder(checkpoint, run, p0.shape, interrupt)
+        yield CheckpointFolder(checkpoint, run, arrays["p0"].shape, interrupt)
 
 
 def _check_entries(folder: Path) -> None:
@@ -139,34 +138,34 @@ def _is_own(path: Path) -> bool:
 
 
 def _make(
-    checkpoint: Checkpoint, run: RunDescription, p0: Array, reference: Array | None
+    checkpoint: Checkpoint, run: Mapping[str, Any], arrays: Mapping[str, Any]
 ) -> None:
     import zarr
 
     folder = checkpoint.folder
     for path in folder.iterdir():
-        if path.name == _STORE:
+        if path.name == STORE:
             shutil.rmtree(path)
         elif path.name != LOCK:
             path.unlink()
-    store = zarr.create_group(folder / _STORE, attributes={"title": _TITLE})
-    for name in ("pass-1", "pass-2") if run.arguments["extrapolate"] else ("pass-1",):
+    store = zarr.create_group(folder / STORE, attributes={"title": _TITLE})
+    for name in ("pass-1", "pass-2") if run["extrapolate"] else ("pass-1",):
         store.create_group(name)
-    for path in [*(folder / _STORE).rglob("zarr.json"), folder / _STORE]:
+    write_start(store, {name: np.asarray(arrays[name]) for name in digested(run)})
+    for path in [*(folder / STORE).rglob("*"), folder / STORE]:
         sync(path)
-    write_start(folder, p0, reference)
     # Last: with it the folder becomes a checkpoint.
     Manifest(run, checkpoint.every, checkpoint.notes, versions()).write(folder)
     sync(folder.absolute().parent)
 
 
-def _check_same(folder: Path, run: RunDescription) -> None:
+def _check_same(folder: Path, run: Mapping[str, Any]) -> None:
     manifest = read_manifest(folder)
-    differences = manifest.run.differences(run)
+    differences = differing_arguments(manifest.run, run)
     if differences:
         raise CheckpointMismatchError(folder, differences)
     manifest.warn_of_other_versions(folder)
-    for path in [*folder.glob("*" + DRAFT), *(folder / _STORE).rglob(_PARTIAL)]:
+    for path in [*folder.glob("*" + DRAFT), *(folder / STORE).rglob(_PARTIAL)]:
         path.unlink(missing_ok=True)
 
 

@@ -67,30 +67,24 @@ class CheckpointKeeper:
     def begin(self, run: Pass) -> bool:
         """Take a pass to its last good checkpoint; False if there is none."""
         for snapshot in self.files.read():
-            if self.store.holds(snapshot.n_saved, snapshot.n_stored):
-                self.store.continue_from(snapshot.n_saved, snapshot.n_stored)
+            if self.store.holds(snapshot.n_saved):
+                self.store.n_saved = snapshot.n_saved
                 run.restore(snapshot)
                 self.kept = snapshot
                 return True
             warnings.warn(
                 f"checkpoint `{self.files.newest}` is not used: output that belongs to "
-                f"it is missing or damaged in `{self.store.folder}`",
+                f"it is missing or damaged in `{self.store.path.parent}`",
                 UserWarning,
                 stacklevel=2,
             )
         self.files.clear()
-        self.store.continue_from(0, 0)
         return False
 
     def save(self, p: Array) -> None:
         """Append a density to the store."""
-        with self._writing(self.store.folder / "density"):
+        with self._writing(self.store.path):
             self.store.save(p)
-
-    def absorb(self, rows: list[dict[str, float]]) -> None:
-        """Append full chunks of rows to the store and drop them from the list."""
-        with self._writing(self.store.folder / "series"):
-            self.store.absorb(rows)
 
     def after(self, run: Pass) -> None:
         """Write a checkpoint if one is due, and heed Ctrl-C."""
@@ -107,8 +101,6 @@ class CheckpointKeeper:
     def finish(self, run: Pass) -> None:
         """Write the checkpoint of a complete pass, unless it is there."""
         if self.kept is None or self.kept.step != run.step:
-            with self._writing(self.store.folder / "series"):
-                self.store.absorb(run.recorder.rows, complete=True)
             self._write(run)
 
     def interrupted(self, run: Pass) -> str:
@@ -120,25 +112,12 @@ class CheckpointKeeper:
                 return f"; {error}"
         return f"; `fpsolve resume {self.folder}` goes on"
 
-    def series(
-        self, columns: tuple[str, ...], rows: list[dict[str, float]]
-    ) -> dict[str, Array]:
-        """All records as arrays."""
-        # Damage makes zarr raise whatever it comes across.
-        try:
-            return self.store.series(columns, rows)
-        except Exception as error:
-            reason = f"it is damaged ({' '.join(str(error).split()).rstrip('.')})"
-            raise CheckpointError(
-                self.store.folder / "series", reason, self._remedy(), action="read"
-            ) from error
-
     def densities(self) -> Any:
         """The saved densities, read when they are asked for."""
         return self.store.densities()
 
     def _write(self, run: Pass) -> None:
-        snapshot = run.snapshot(self.store.n_saved, self.store.n_stored)
+        snapshot = run.snapshot(self.store.n_saved)
         with self._writing(self.files.next_path):
             self.store.synchronise()
             self.files.write(snapshot)

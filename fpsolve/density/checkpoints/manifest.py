@@ -14,7 +14,6 @@ from typing import IO, Any
 from fpsolve._support.durable import write_durably
 from fpsolve._support.json_text import bounded_json
 from fpsolve._support.provenance import versions
-from fpsolve.density.description import RunDescription
 from fpsolve.errors import FileFormatError
 
 __all__ = ["FORMAT", "MANIFEST", "Manifest", "read_manifest"]
@@ -23,14 +22,17 @@ __all__ = ["FORMAT", "MANIFEST", "Manifest", "read_manifest"]
 FORMAT = 1
 MANIFEST = "run.json"
 _ABOUT = "Checkpoint of a run of fpsolve. Go on with `fpsolve resume FOLDER`."
-_NEEDED = ("run", "digest", "every", "notes", "versions")
+_NEEDED = ("run", "every", "notes", "versions", "checksum")
 
 
 @dataclass(frozen=True)
 class Manifest:
-    """The run, how often its checkpoints are written, and the caller's notes."""
+    """The run, how often its checkpoints are written, and the caller's notes.
 
-    run: RunDescription
+    `run` is what `fpsolve.density.checkpoints.identity.identified` says of it.
+    """
+
+    run: Mapping[str, Any]
     every: int | str
     notes: Mapping[str, str]
     versions: Mapping[str, str]
@@ -43,8 +45,7 @@ class Manifest:
             "date": datetime.now(UTC).isoformat(timespec="seconds"),
             "versions": dict(self.versions),
             "every": self.every,
-            "digest": self.run.digest,
-            "run": self.run.to_dict(),
+            "run": self.run,
             "notes": dict(self.notes),
         }
         content["checksum"] = _checksum(content)
@@ -110,27 +111,12 @@ def _checked(path: Path, content: Mapping[str, Any]) -> Manifest:
     missing = [f"`{name}`" for name in _NEEDED if name not in content]
     if missing:
         raise FileFormatError(path, f"{', '.join(missing)} is missing in it")
-    try:
-        run = RunDescription.from_dict(content["run"])
-    except TypeError:
-        raise FileFormatError(path, "its `run` is not that of a run") from None
-    _check_types(path, run, content)
-    manifest = Manifest(run, content["every"], content["notes"], content["versions"])
-    if run.digest != content["digest"]:
-        raise FileFormatError(path, "its `run` was changed after it was written")
-    # Older versions wrote none.
-    if content.get("checksum", _checksum(content)) != _checksum(content):
+    run = content["run"]
+    if not (isinstance(run, dict) and run.keys() >= {"scheme", "p0", "s_span", "ds"}):
+        raise FileFormatError(path, "its `run` is not that of a run")
+    if content["checksum"] != _checksum(content):
         raise FileFormatError(path, "it was changed after it was written")
-    return manifest
-
-
-def _check_types(path: Path, run: RunDescription, content: Mapping[str, Any]) -> None:
-    tables = run.to_dict() | {name: content[name] for name in ("notes", "versions")}
-    for name, table in tables.items():
-        if not isinstance(table, dict):
-            raise FileFormatError(path, f"its `{name}` must be a table")
-    if not isinstance(content["every"], int | str):
-        raise FileFormatError(path, "its `every` must be a number or text")
+    return Manifest(run, content["every"], content["notes"], content["versions"])
 
 
 def _checksum(content: Mapping[str, Any]) -> str:

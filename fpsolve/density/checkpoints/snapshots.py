@@ -56,7 +56,7 @@ class SnapshotFiles:
         kept = {
             name: value
             for name, value in vars(snapshot).items()
-            if name not in ("state", "first", "tail")
+            if name not in ("state", "records")
         }
         plain, arrays = _split(snapshot.state)
         about = {
@@ -68,8 +68,7 @@ class SnapshotFiles:
         }
         members: dict[str, Any] = {
             "about": np.array(json.dumps(about)),
-            "first": snapshot.first,
-            "tail": snapshot.tail,
+            "records": snapshot.records,
             **{_ARRAY + name: values for name, values in arrays.items()},
         }
 
@@ -133,9 +132,7 @@ class SnapshotFiles:
                 state[name] = members[_ARRAY + name]
             about["columns"] = tuple(about["columns"])
             about["seconds"] = tuple(about["seconds"])
-            return Snapshot(
-                first=members["first"], tail=members["tail"], state=state, **about
-            )
+            return Snapshot(records=members["records"], state=state, **about)
 
 
 @contextmanager

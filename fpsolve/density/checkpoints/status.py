@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from fpsolve._support.checks import check_path
+from fpsolve.density.checkpoints.identity import digest_of_run
 from fpsolve.density.checkpoints.manifest import read_manifest
 from fpsolve.density.checkpoints.snapshots import SnapshotFiles
 from fpsolve.evolution.schedule import make_schedule
@@ -47,13 +48,10 @@ def status_of(directory: str | Path) -> CheckpointStatus:
     """
     folder = check_path("directory", directory)
     run = read_manifest(folder).run
-    asked = run.arguments
-    schedule = make_schedule(
-        asked["s_span"], asked["ds"], asked["save_at"], asked["record_every"]
-    )
-    n_total = schedule.n_steps * (3 if asked["extrapolate"] else 1)
+    schedule = make_schedule(run["s_span"], run["ds"], record_every=run["record_every"])
+    n_total = schedule.n_steps * (3 if run["extrapolate"] else 1)
     for name, n_before in (("pass-2", schedule.n_steps), ("pass-1", 0)):
-        reached = SnapshotFiles(folder, name, run.digest).reached()
+        reached = SnapshotFiles(folder, name, digest_of_run(run)).reached()
         if reached is not None:
             step, s = reached
             return CheckpointStatus(s, n_before + step, n_total)

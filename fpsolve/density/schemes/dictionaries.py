@@ -1,17 +1,45 @@
-"""Schemes from the dictionaries that describe them."""
+"""Schemes as dictionaries, and back."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from typing import Any
 
-from fpsolve.density.description import CODE
 from fpsolve.density.schemes.known import SCHEMES
 from fpsolve.density.schemes.scheme import Scheme
 from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.model.identity.digests import digest_or_none
 from fpsolve.model.laydown import LayDownModel
 
-__all__ = ["scheme_from_dict"]
+__all__ = ["CODE", "describe_scheme", "described_scheme", "scheme_from_dict"]
+
+# Key of what tells a class of a user's own from others: its name and a digest.
+CODE = "code"
+
+
+def describe_scheme(scheme: Scheme) -> dict[str, Any]:
+    """Return name, order and options of a scheme, ready for JSON.
+
+    Of a user's own class, which may have inherited a name, also which code it is.
+    """
+    kind = type(scheme)
+    about = {
+        "name": scheme.name,
+        "order": scheme.order,
+        "options": dict(scheme.options),
+    }
+    if kind not in SCHEMES.values():
+        digest = digest_or_none(kind, sampled=False)
+        about[CODE] = f"{kind.__module__}.{kind.__qualname__} {digest}"
+    return about
+
+
+def described_scheme(scheme: Any, arguments: Any = None) -> Any:
+    """Return what a call says of a scheme; of a model in its place, the model."""
+    if scheme is None or isinstance(scheme, LayDownModel):
+        return scheme
+    about = describe_scheme(scheme)
+    return {"$scheme": {"scheme": about, "model": scheme.model, "grid": scheme.grid}}
 
 
 def scheme_from_dict(
@@ -26,9 +54,10 @@ def scheme_from_dict(
     """
     name = description["name"]
     if CODE in description:
+        own, _, _ = str(description[CODE]).rpartition(" ")
         raise ValueError(
             f"`scheme` must be one of fpsolve, got a class of your own that calls "
-            f"itself {name!r}."
+            f"itself {name!r} ({own})."
         )
     if name not in SCHEMES:
         known = ", ".join(repr(one) for one in SCHEMES)

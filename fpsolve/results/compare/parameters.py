@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from fpsolve._support.declared import declared
+from fpsolve.evolution.differences import differences
 
 __all__ = ["differing_environment", "differing_parameters"]
 
@@ -22,7 +23,7 @@ _LONGEST = 60
 
 def differing_parameters(a: Mapping[str, Any], b: Mapping[str, Any]) -> tuple[str, ...]:
     """Name every parameter in which the attributes of two results differ."""
-    return tuple(_differences(_parameters(a), _parameters(b)))
+    return tuple(_lines(_parameters(a), _parameters(b)))
 
 
 def differing_environment(
@@ -32,20 +33,20 @@ def differing_environment(
     first, second = _environment(a), _environment(b)
     if not (first and second):
         return ()
-    return tuple(_differences(first, second))
+    return tuple(_lines(first, second))
 
 
 def _parameters(attributes: Mapping[str, Any]) -> dict[str, Any]:
-    flat: dict[str, Any] = {}
     about = {**attributes, **declared(attributes)}
-    call = about.pop("call", {})
-    for name, value in about.items():
-        if name not in _ORIGIN and not name.endswith("_version"):
-            flat.update(_flattened(str(name), value))
+    asked = about.pop("call", {}).get("arguments", {}).items()
+    parameters = {
+        str(name): value
+        for name, value in about.items()
+        if name not in _ORIGIN and not name.endswith("_version")
+    }
     # What is an attribute of its own need not be named twice.
-    asked = call.get("arguments", {}).items()
     own = {key: one for key, one in asked if key not in attributes}
-    return flat | dict(_flattened("call", own))
+    return {**parameters, "call": own}
 
 
 def _environment(attributes: Mapping[str, Any]) -> dict[str, Any]:
@@ -60,24 +61,18 @@ def _environment(attributes: Mapping[str, Any]) -> dict[str, Any]:
     libraries = sorted({f"{one.get('library')} {one.get('version')}" for one in blas})
     packages = {**environment.pop("packages", {}), **versions}
     packages.pop("python", None)
-    flat = {**packages, **dict(_flattened("", environment))}
+    numba = environment.pop("numba", {})
+    flat = {**packages, **environment, **{f"numba.{k}": v for k, v in numba.items()}}
     if blas:
         flat["BLAS"] = ", ".join(libraries)
         flat["BLAS threads"] = ", ".join(threads)
     return flat
 
 
-def _flattened(name: str, value: Any) -> Iterator[tuple[str, Any]]:
-    if isinstance(value, Mapping):
-        for key, entry in value.items():
-            yield from _flattened(f"{name}.{key}" if name else str(key), entry)
-    else:
-        yield name, value
-
-
-def _differences(a: Mapping[str, Any], b: Mapping[str, Any]) -> Iterator[str]:
-    for name in {**a, **b}:
-        first, second = _shown(a.get(name)), _shown(b.get(name))
+def _lines(a: Mapping[str, Any], b: Mapping[str, Any]) -> Iterator[str]:
+    for name, one, other in differences(a, b):
+        first, second = _shown(one), _shown(other)
+        # Two NaN differ only as numbers.
         if first != second:
             yield f"{name}: {_cut(first)} in A, {_cut(second)} in B"
 

@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve.density.description import describe_scheme
-from fpsolve.density.schemes.dictionaries import scheme_from_dict
+from fpsolve.density.schemes.dictionaries import describe_scheme, scheme_from_dict
 from fpsolve.density.schemes.scheme import Scheme
 from fpsolve.density.solution import Solution
 from fpsolve.density.solve import solve

@@ -14,8 +14,8 @@ from fpsolve._support.arrays import check_numbers
 from fpsolve._support.blas import one_blas_thread
 from fpsolve._support.checks import check_integer, check_kind, check_real
 from fpsolve._support.progress import ProgressCallback
-from fpsolve.density.description import described_scheme
 from fpsolve.density.schemes import drift_kick
+from fpsolve.density.schemes.dictionaries import described_scheme
 from fpsolve.density.schemes.scheme import Scheme
 from fpsolve.density.solution import Solution
 from fpsolve.density.solve import solve
