@@ -17,7 +17,7 @@ __all__ = ["DRAFT", "opened_npz", "sync", "write_durably"]
 DRAFT = ".draft"
 
 
-def write_durably(path: Path, write: Callable[[IO[bytes]], None]) -> None:
+def write_durably(path: Path, write: Callable[[IO[bytes]], object]) -> None:
     """Write a file that takes the place of `path` when it is complete and on disk.
 
     A kill or a power cut leaves either the old file or the new one, and at worst a

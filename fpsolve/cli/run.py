@@ -53,8 +53,7 @@ def run(
             chosen = chosen.without_figures()
         set_threads(threads)
         frame.use(out)
-        from fpsolve.density.checkpoints.checkpoint import Checkpoint
-        from fpsolve.density.checkpoints.every import parse_interval
+        from fpsolve.density.checkpoints.checkpoint import Checkpoint, parse_interval
 
         if checkpoint is not None:
             parse_interval(checkpoint)

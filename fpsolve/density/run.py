@@ -11,8 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fpsolve._support.progress import ProgressCallback
-from fpsolve.density.keeper import MemoryKeeper
-from fpsolve.density.one_pass import Pass
+from fpsolve._support.provenance import Stopwatch
+from fpsolve.density.keeper import MemoryKeeper, Snapshot, fields_of
+from fpsolve.density.recorder import Recorder
 from fpsolve.density.schemes.dictionaries import describe_scheme
 from fpsolve.density.schemes.scheme import Scheme
 from fpsolve.density.solution import Solution
@@ -37,8 +38,16 @@ __all__ = ["Run"]
 Array = NDArray[np.float64]
 
 
-class Run(Pass):
-    """One pass over a schedule, from its start or its last checkpoint to the end."""
+class Run:
+    """One pass over a schedule, from its start or its last checkpoint to the end.
+
+    Attributes
+    ----------
+    step : int
+        Steps done at the last record.
+    settled : bool
+        Whether the state is that of the last record: between two it is not.
+    """
 
     def __init__(
         self,
@@ -51,10 +60,13 @@ class Run(Pass):
         schedule: Schedule,
         keeper: MemoryKeeper | CheckpointKeeper,
     ) -> None:
-        super().__init__(scheme, p0, reference, observed, schedule)
-        self.tolerances, self.keeper = tolerances, keeper
+        self.scheme, self.schedule, self.keeper = scheme, schedule, keeper
+        self.tolerances, self.saves = tolerances, frozenset(schedule.saves)
         self.p0, self.reference, self.call = p0, reference, call
-        self.saves = frozenset(schedule.saves)
+        self.recorder = Recorder(scheme.model, scheme.grid, reference, observed)
+        self.state = scheme.start(p0)
+        self.step, self.settled = 0, False
+        self.watch = Stopwatch()
 
     def complete(
         self,
@@ -74,21 +86,43 @@ class Run(Pass):
             for first, last in self._legs():
                 self._advance(first, last)
                 report(n_before + last, n_total, self.schedule.s(last))
-                self.keeper.after(self)
-            self.keeper.finish(self)
+                self.keeper.after(last, self.snapshot)
+            self.keeper.finish(self.step, self.snapshot)
         except RunError as error:
             error.solution = self._partial("failed", str(error), fallback)
             raise
         except KeyboardInterrupt:
-            message = "stopped by the user" + self.keeper.interrupted(self)
+            step = self.step if self.settled else None
+            message = (
+                f"stopped by the user{self.keeper.interrupted(step, self.snapshot)}"
+            )
             partial = self._partial("interrupted", message, fallback)
             raise RunInterrupted(partial) from None
         return self._solution("finished", "")
 
+    def snapshot(self, n_saved: int) -> Snapshot:
+        """Return what is needed to go on from here, with so many densities saved."""
+        return Snapshot(
+            step=self.step,
+            s=self.schedule.s(self.step),
+            n_saved=n_saved,
+            seconds=self.watch.seconds(),
+            columns=self.recorder.columns,
+            records=self.recorder.table(),
+            state=fields_of(self.state),
+        )
+
     def _begin(self) -> None:
         """Record the start, or go to where the run was left."""
-        if not self.keeper.begin(self):
+        left = self.keeper.last()
+        if left is None:
             self._record(0)
+        else:
+            for name, value in left.state.items():
+                setattr(self.state, name, value)
+            self.recorder.go_on(left.columns, left.records)
+            self.watch.add(*left.seconds)
+            self.step = left.step
         self.settled = True
 
     def _legs(self) -> Iterator[tuple[int, int]]:

@@ -6,7 +6,7 @@ import os
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import AbstractContextManager, nullcontext
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +19,7 @@ from fpsolve._support.progress import ProgressCallback, reporting
 from fpsolve._support.provenance import announced_compilation
 from fpsolve.density.checkpoints.checkpoint import Checkpoint, as_checkpoint
 from fpsolve.density.extrapolation import extrapolated
-from fpsolve.density.keeper import MemoryKeepers
+from fpsolve.density.keeper import MemoryKeeper
 from fpsolve.density.observed import Observe, described_observed, observed_series
 from fpsolve.density.run import Run
 from fpsolve.density.schemes.dictionaries import described_scheme
@@ -31,11 +31,13 @@ from fpsolve.evolution.schedule import Schedule, checked_stops, make_schedule
 from fpsolve.grids.diagnostics import checked_reference
 
 if TYPE_CHECKING:
-    from fpsolve.density.checkpoints.folder import CheckpointFolder
+    from fpsolve.density.checkpoints.keeper import CheckpointKeeper
 
 __all__ = ["solve"]
 
 Array = NDArray[np.float64]
+# Of the name of a pass and its schedule.
+Keepers: TypeAlias = Callable[[str, Schedule], "MemoryKeeper | CheckpointKeeper"]
 
 
 @one_blas_thread()
@@ -140,14 +142,10 @@ def solve(
     extrapolate = check_flag("extrapolate", extrapolate)
     if reference is not None:
         reference = checked_reference(reference, scheme.grid)
-    allowed = {
-        "mass_tolerance": mass_tolerance,
-        "boundary_tolerance": boundary_tolerance,
-        "negative_tolerance": negative_tolerance,
-        "entropy_tolerance": entropy_tolerance,
-        "circulation_tolerance": circulation_tolerance,
-    }
-    tolerances = Tolerances(*allowed.values())
+    tolerances = Tolerances(
+        mass_tolerance, boundary_tolerance, negative_tolerance, entropy_tolerance,
+        circulation_tolerance,
+    )  # fmt: skip
     observed = observed_series(observe)
     save_at = None if save_at is None else tuple(checked_stops(save_at))
     schedule = make_schedule(s_span, ds, save_at, record_every)
@@ -166,7 +164,7 @@ def solve(
         "ds": float(ds),
         "save_at": save_at,
         "extrapolate": extrapolate,
-        **{name: float(value) for name, value in allowed.items()},
+        **{f"{name}_tolerance": float(one) for name, one in vars(tolerances).items()},
         "reference": None if reference is None else Kept("reference", reference),
         "record_every": int(record_every),
         "observe": described_observed(observe, checkpoint is not None),
@@ -184,7 +182,7 @@ def solve(
 
 def _completed(
     begin: Callable[..., Run],
-    keepers: MemoryKeepers | CheckpointFolder,
+    keepers: Keepers,
     schedule: Schedule,
     extrapolate: bool,
     report: ProgressCallback,
@@ -194,7 +192,7 @@ def _completed(
     n_total, n_before = sum(one.n_steps for one in passes), 0
     found: list[Solution] = []
     for number, one in enumerate(passes, start=1):
-        run = begin(one, keepers.keeper(f"pass-{number}", one))
+        run = begin(one, keepers(f"pass-{number}", one))
         found.append(run.complete(report, n_before, n_total, *found))
         n_before += one.n_steps
     if not extrapolate:
@@ -209,10 +207,11 @@ def _keepers(
     scheme: Scheme,
     arrays: Mapping[str, Any],
     schedule: Schedule,
-) -> AbstractContextManager[MemoryKeepers | CheckpointFolder]:
-    """What hands out the keepers of the passes."""
+) -> AbstractContextManager[Keepers]:
+    """What makes the keepers of the passes."""
     if checkpoint is None:
-        return nullcontext(MemoryKeepers(scheme.grid.shape))
+        shape = scheme.grid.shape
+        return nullcontext(lambda name, one: MemoryKeeper(shape, len(one.saves)))
     # zarr and its locks are loaded for those who ask for them.
     from fpsolve.density.checkpoints.folder import opened_folder
     from fpsolve.density.checkpoints.identity import identified

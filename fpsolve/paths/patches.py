@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from fpsolve.model.potentials.partition import Normalisation
 from fpsolve.model.potentials.quadrature import lowest_nearby, node_values, rules_for
+from fpsolve.paths.rejection import drawn
 
 __all__ = ["PatchRejection"]
 
@@ -17,7 +18,6 @@ Array = NDArray[np.float64]
 # Around a node B falls by no more than its differences to the neighbours say, where it
 # is convex or concave; the margin is for places where it turns from one to the other.
 MARGIN, SLACK = 1.5, 0.02
-FEWEST = 1024
 # Patches that weigh less than this part of all are never drawn.
 NEGLIGIBLE = 1e-20
 
@@ -66,13 +66,7 @@ class PatchRejection:
 
     def __call__(self, rng: np.random.Generator, n: int) -> Array:
         """Draw n points, shape (n, 2)."""
-        found: list[Array] = []
-        missing = n
-        while missing > 0:
-            accepted = self._proposed(rng, max(2 * missing, FEWEST))
-            found.append(accepted[:missing])
-            missing -= len(found[-1])
-        return np.concatenate(found) if found else np.empty((0, 2))
+        return drawn(self._proposed, rng, n, 2)
 
     def _proposed(self, rng: np.random.Generator, n: int) -> Array:
         chosen = rng.uniform(0.0, self.cumulated[-1], n)

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["CellRejection"]
+__all__ = ["CellRejection", "drawn"]
 
 Array = NDArray[np.float64]
 
@@ -16,6 +16,21 @@ Array = NDArray[np.float64]
 N_PROBES = 3
 MARGIN = 1.1
 FEWEST = 1024
+
+
+def drawn(
+    propose: Callable[[np.random.Generator, int], Array],
+    rng: np.random.Generator,
+    n: int,
+    dimension: int,
+) -> Array:
+    """The first n points that are accepted of proposals, shape (n, dimension)."""
+    found, missing = [np.empty((0, dimension))], n
+    while missing > 0:
+        accepted = propose(rng, max(2 * missing, FEWEST))
+        found.append(accepted[:missing])
+        missing -= len(found[-1])
+    return np.concatenate(found)
 
 
 class CellRejection:
@@ -53,13 +68,7 @@ class CellRejection:
 
     def __call__(self, rng: np.random.Generator, n: int) -> Array:
         """Draw n points, shape (n, d)."""
-        found: list[Array] = []
-        missing = n
-        while missing > 0:
-            accepted = self._proposed(rng, max(2 * missing, FEWEST))
-            found.append(accepted[:missing])
-            missing -= len(found[-1])
-        return np.concatenate(found)
+        return drawn(self._proposed, rng, n, len(self.shape))
 
     def _proposed(self, rng: np.random.Generator, n: int) -> Array:
         chosen = rng.uniform(0.0, self.cumulated[-1], n)

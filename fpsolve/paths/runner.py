@@ -22,9 +22,9 @@ from fpsolve._support.provenance import Stopwatch, announced_compilation
 from fpsolve.errors import NonFinitePathError, RunInterrupted
 from fpsolve.evolution.call import Call
 from fpsolve.evolution.schedule import Schedule, make_schedule
-from fpsolve.paths.batch import Batch, BatchRun, batches_of
+from fpsolve.model.identity.digests import digest_or_none
+from fpsolve.paths.batch import Batch, BatchRun, batches_of, run_batch
 from fpsolve.paths.call import call_of
-from fpsolve.paths.elsewhere import code_of, run_there
 from fpsolve.paths.ensemble import Ensemble, GivenStart
 from fpsolve.paths.integrators import LARGEST_TURN
 
@@ -155,6 +155,24 @@ def run_elsewhere(
         n, future = futures.popleft()
         collect(batches, future.result())
         meter(n * n_steps)
+
+
+def run_there(
+    code: str | None, ensemble: Ensemble, first: int, n: int, state: Array | None
+) -> Batch:
+    """As `run_batch`, in another process: there a name may stand for other code."""
+    if code is not None and code_of(ensemble) != code:
+        raise RuntimeError(
+            "`model`, or `initial`, is other code in the process of `client` than "
+            "here, or of another version; restart this process and those of `client` "
+            "so that all import the same."
+        )
+    return run_batch(ensemble, first, n, state)
+
+
+def code_of(ensemble: Ensemble) -> str | None:
+    """The code that decides the paths, as a digest without a machine's rounding."""
+    return digest_or_none((Batch, ensemble.model, ensemble.law), sampled=False)
 
 
 def collect(batches: list[Batch], batch: Batch) -> None:

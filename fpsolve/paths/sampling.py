@@ -20,17 +20,19 @@ from fpsolve._support.progress import ProgressCallback
 from fpsolve.errors import GridMismatchError
 from fpsolve.grids.phase_space import PhaseSpaceGrid, check_grid
 from fpsolve.model.laydown import LayDownModel, check_model
-from fpsolve.paths.elsewhere import check_repeats
-from fpsolve.paths.ensemble import Ensemble, GivenStart
+from fpsolve.paths.ensemble import START_BLOCK, Ensemble, GivenStart, checked_sample
 from fpsolve.paths.integrators import METHODS
-from fpsolve.paths.laws import PointLaw
-from fpsolve.paths.randomness import seed_number
+from fpsolve.paths.laws import DensityLaw, EquilibriumLaw, GaussianLaw, PointLaw
+from fpsolve.paths.randomness import seed_number, start_generator
 from fpsolve.paths.result import Paths
 from fpsolve.paths.runner import completed, required_memory, stepwise
 
 __all__ = ["sample_paths"]
 
 Array = NDArray[np.float64]
+
+# Laws that draw from the generator alone.
+KNOWN = (PointLaw, GaussianLaw, EquilibriumLaw, DensityLaw, GivenStart)
 
 
 def sample_paths(
@@ -142,6 +144,24 @@ def check_histogram(grid: Any) -> None:
     """Raise TypeError unless it is a grid or nothing."""
     if grid is not None:
         check_grid(grid, "histogram")
+
+
+def check_repeats(law: Any) -> None:
+    """Raise ValueError if a law draws other points from a generator that is the same.
+
+    Path k would then depend on when and where it is drawn, and not on the seed.
+    """
+    if type(law) in KNOWN:
+        return
+    (xi, alpha), (xi_again, alpha_again) = (
+        checked_sample(law, law.sample(start_generator(0, 0), START_BLOCK))
+        for _ in range(2)
+    )
+    if not (np.array_equal(xi, xi_again) and np.array_equal(alpha, alpha_again)):
+        raise ValueError(
+            "`initial` must draw from the generator that it is given and from nothing "
+            f"else, got two different samples for the same one from {shown(law)}."
+        )
 
 
 def law_of(initial: Any, n_paths: int) -> Any:

@@ -23,7 +23,7 @@ from checkpoint_runs import (
 import fpsolve as fp
 from fpsolve._support.provenance import versions
 from fpsolve.density.checkpoints import Checkpoint, manifest, snapshots, start
-from fpsolve.density.checkpoints.every import parse_interval
+from fpsolve.density.checkpoints.checkpoint import parse_interval
 from fpsolve.density.checkpoints.folder import remove_folder
 from fpsolve.density.checkpoints.identity import digest_of_run
 from fpsolve.density.checkpoints.status import status_of

@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from fnmatch import fnmatch
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import IO, Any
 
 import numpy as np
 
+try:
+    import fcntl
+except ImportError:  # Windows
+    fcntl = None  # type: ignore[assignment]
+
 from fpsolve._support.durable import DRAFT, sync
 from fpsolve._support.interrupts import deferred_interrupts
-from fpsolve._support.locks import LOCK, locked
 from fpsolve._support.provenance import versions
 from fpsolve.density.checkpoints.checkpoint import Checkpoint
 from fpsolve.density.checkpoints.identity import differing_arguments, digest_of_run
@@ -25,49 +29,24 @@ from fpsolve.density.checkpoints.store import PassStore
 from fpsolve.errors import CheckpointError, CheckpointMismatchError
 from fpsolve.evolution.schedule import Schedule
 
-if TYPE_CHECKING:
-    from collections.abc import Callable
+__all__ = ["opened_folder", "remove_folder"]
 
-__all__ = ["CheckpointFolder", "opened_folder", "remove_folder"]
-
-_TITLE = "Records and saved densities of a run of fpsolve that is not complete"
+_TITLE = "Start and saved densities of a run of fpsolve that is not complete"
+_LOCK = "lock"
 # Patterns of what the folder holds while it has no `run.json`: it is being made, or
 # removed.
-_OWN = (LOCK, f"*{DRAFT}", "pass-?-?.npz", STORE)
+_OWN = (_LOCK, f"*{DRAFT}", "pass-?-?.npz", STORE)
 # What zarr calls a file until it is complete.
 _PARTIAL = "*.partial"
-
-
-class CheckpointFolder:
-    """Hands out a keeper for every pass of the run."""
-
-    def __init__(
-        self,
-        checkpoint: Checkpoint,
-        run: Mapping[str, Any],
-        shape: tuple[int, ...],
-        raise_if_interrupted: Callable[[], None],
-    ) -> None:
-        self.checkpoint, self.run = checkpoint, run
-        self.shape, self.raise_if_interrupted = shape, raise_if_interrupted
-
-    def keeper(self, name: str, schedule: Schedule) -> CheckpointKeeper:
-        """Return what keeps the pass of that name."""
-        folder = self.checkpoint.folder
-        return CheckpointKeeper(
-            folder,
-            PassStore(folder / STORE / name, len(schedule.saves), self.shape),
-            SnapshotFiles(folder, name, digest_of_run(self.run)),
-            self.checkpoint.interval,
-            self.raise_if_interrupted,
-        )
 
 
 @contextmanager
 def opened_folder(
     checkpoint: Checkpoint, run: Mapping[str, Any], arrays: Mapping[str, Any]
-) -> Iterator[CheckpointFolder]:
+) -> Iterator[Callable[[str, Schedule], CheckpointKeeper]]:
     """Make the folder of a run, or open it if it is of the same run.
+
+    Yields what makes a keeper for the pass of a name.
 
     Parameters
     ----------
@@ -94,12 +73,32 @@ def opened_folder(
             _check_entries(folder)
             _check_free(folder)
             folder.mkdir(parents=True, exist_ok=True)
-            stack.enter_context(locked(folder))
+            _lock(stack.enter_context((folder / _LOCK).open("w")), folder)
             if not (folder / MANIFEST).exists():
                 _make(checkpoint, run, arrays)
         _check_same(folder, run)
         interrupt = stack.enter_context(deferred_interrupts())
-        yield CheckpointFolder(checkpoint, run, arrays["p0"].shape, interrupt)
+
+        def keeper(name: str, schedule: Schedule) -> CheckpointKeeper:
+            size = len(schedule.saves), arrays["p0"].shape
+            return CheckpointKeeper(
+                folder, PassStore(folder / STORE / name, *size),
+                SnapshotFiles(folder, name, digest_of_run(run)), checkpoint.interval,
+                schedule.records, interrupt,
+            )  # fmt: skip
+
+        yield keeper
+
+
+def _lock(file: IO[str], folder: Path) -> None:
+    """Have one run at a time; the lock of a killed process is free at once."""
+    try:
+        if fcntl is not None:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        raise CheckpointError(
+            folder, "another run is writing to it", "wait until that has ended"
+        ) from None
 
 
 def _check_entries(folder: Path) -> None:
@@ -146,7 +145,7 @@ def _make(
     for path in folder.iterdir():
         if path.name == STORE:
             shutil.rmtree(path)
-        elif path.name != LOCK:
+        elif path.name != _LOCK:
             path.unlink()
     store = zarr.create_group(folder / STORE, attributes={"title": _TITLE})
     for name in ("pass-1", "pass-2") if run["extrapolate"] else ("pass-1",):

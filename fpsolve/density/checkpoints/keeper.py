@@ -5,24 +5,19 @@ from __future__ import annotations
 import time
 import warnings
 from bisect import bisect_right
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve.density.checkpoints.every import Interval
+from fpsolve.density.checkpoints.checkpoint import Interval
 from fpsolve.density.checkpoints.snapshots import SnapshotFiles
 from fpsolve.density.checkpoints.store import PassStore
-from fpsolve.density.one_pass import Pass
-from fpsolve.density.snapshot import Snapshot
+from fpsolve.density.keeper import Snapshot, Take
 from fpsolve.errors import CheckpointError
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
 
 __all__ = ["CheckpointKeeper"]
 
@@ -42,6 +37,8 @@ class CheckpointKeeper:
     store : PassStore
     files : SnapshotFiles
     interval : Interval
+    records : sequence of int
+        Steps at which the pass records.
     raise_if_interrupted : callable
         Raises KeyboardInterrupt if Ctrl-C was pressed.
     """
@@ -52,11 +49,14 @@ class CheckpointKeeper:
         store: PassStore,
         files: SnapshotFiles,
         interval: Interval,
+        records: Sequence[int],
         raise_if_interrupted: Callable[[], None],
     ) -> None:
         self.folder, self.store, self.files = folder, store, files
-        self.interval, self.raise_if_interrupted = interval, raise_if_interrupted
-        self.kept: Snapshot | None = None
+        self.interval, self.records = interval, records
+        self.raise_if_interrupted = raise_if_interrupted
+        # Step and arclength of the newest one.
+        self.kept: tuple[int, float] | None = None
         self.kept_at = time.monotonic()
 
     @property
@@ -64,14 +64,13 @@ class CheckpointKeeper:
         """Densities saved so far."""
         return self.store.n_saved
 
-    def begin(self, run: Pass) -> bool:
-        """Take a pass to its last good checkpoint; False if there is none."""
+    def last(self) -> Snapshot | None:
+        """The last good checkpoint of the pass; None if there is none."""
         for snapshot in self.files.read():
             if self.store.holds(snapshot.n_saved):
                 self.store.n_saved = snapshot.n_saved
-                run.restore(snapshot)
-                self.kept = snapshot
-                return True
+                self.kept = snapshot.step, snapshot.s
+                return snapshot
             warnings.warn(
                 f"checkpoint `{self.files.newest}` is not used: output that belongs to "
                 f"it is missing or damaged in `{self.store.path.parent}`",
@@ -79,35 +78,34 @@ class CheckpointKeeper:
                 stacklevel=2,
             )
         self.files.clear()
-        return False
+        return None
 
     def save(self, p: Array) -> None:
         """Append a density to the store."""
         with self._writing(self.store.path):
             self.store.save(p)
 
-    def after(self, run: Pass) -> None:
+    def after(self, step: int, take: Take) -> None:
         """Write a checkpoint if one is due, and heed Ctrl-C."""
         self.raise_if_interrupted()
-        last = self.kept.step if self.kept else 0
+        last = self.kept[0] if self.kept else 0
         seconds = time.monotonic() - self.kept_at
-        records = run.schedule.records
-        place = bisect_right(records, run.step)
+        place = bisect_right(self.records, step)
         # The end of a pass is not waited for here: `finish` writes it.
-        ahead = records[place] - last if place < len(records) else 0
+        ahead = self.records[place] - last if place < len(self.records) else 0
         if self.interval.over(ahead, seconds):
-            self._write(run)
+            self._write(take)
 
-    def finish(self, run: Pass) -> None:
+    def finish(self, step: int, take: Take) -> None:
         """Write the checkpoint of a complete pass, unless it is there."""
-        if self.kept is None or self.kept.step != run.step:
-            self._write(run)
+        if self.kept is None or self.kept[0] != step:
+            self._write(take)
 
-    def interrupted(self, run: Pass) -> str:
+    def interrupted(self, step: int | None, take: Take) -> str:
         """Write a last checkpoint; say how to go on."""
-        if run.settled and (self.kept is None or self.kept.step != run.step):
+        if step is not None:
             try:
-                self._write(run)
+                self.finish(step, take)
             except CheckpointError as error:
                 return f"; {error}"
         return f"; `fpsolve resume {self.folder}` goes on"
@@ -116,13 +114,12 @@ class CheckpointKeeper:
         """The saved densities, read when they are asked for."""
         return self.store.densities()
 
-    def _write(self, run: Pass) -> None:
-        snapshot = run.snapshot(self.store.n_saved)
+    def _write(self, take: Take) -> None:
+        snapshot = take(self.store.n_saved)
         with self._writing(self.files.next_path):
             self.store.synchronise()
             self.files.write(snapshot)
-        self.kept, self.kept_at = snapshot, time.monotonic()
-        self.kept.state.clear()
+        self.kept, self.kept_at = (snapshot.step, snapshot.s), time.monotonic()
 
     @contextmanager
     def _writing(self, path: Path) -> Iterator[None]:
@@ -136,4 +133,4 @@ class CheckpointKeeper:
         again = f"see to it, then go on with `fpsolve resume {self.folder}`"
         if self.kept is None:
             return f"no earlier one of this pass is there; {again}"
-        return f"the last good one, at s = {self.kept.s:g}, is kept; {again}"
+        return f"the last good one, at s = {self.kept[1]:g}, is kept; {again}"

@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import IO, Any
+from typing import Any
 
 from fpsolve._support.durable import write_durably
 from fpsolve._support.json_text import bounded_json
@@ -50,11 +50,7 @@ class Manifest:
         }
         content["checksum"] = _checksum(content)
         text = json.dumps(content, indent=1, ensure_ascii=False)
-
-        def write(file: IO[bytes]) -> None:
-            file.write(text.encode())
-
-        write_durably(folder / MANIFEST, write)
+        write_durably(folder / MANIFEST, lambda file: file.write(text.encode()))
 
     def warn_of_other_versions(self, folder: Path) -> None:
         """Warn if the run began with other versions: bits may differ from here on."""

@@ -7,14 +7,14 @@ import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import IO, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fpsolve._support.durable import opened_npz, write_durably
 from fpsolve._support.json_text import bounded_json
-from fpsolve.density.snapshot import Snapshot
+from fpsolve.density.keeper import Snapshot
 
 __all__ = ["SnapshotFiles"]
 
@@ -71,11 +71,7 @@ class SnapshotFiles:
             "records": snapshot.records,
             **{_ARRAY + name: values for name, values in arrays.items()},
         }
-
-        def write(file: IO[bytes]) -> None:
-            np.savez(file, **members)
-
-        write_durably(path, write)
+        write_durably(path, lambda file: np.savez(file, **members))
         self.number, self.newest = self.number + 1, path
 
     def read(self) -> Iterator[Snapshot]:
