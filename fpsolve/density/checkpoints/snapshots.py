@@ -80,7 +80,7 @@ class SnapshotFiles:
         The run goes on from the one that is taken last: the other file is written
         next.
         """
-        for number, path in sorted(self._numbers(), reverse=True):
+        for number, path, _ in sorted(self._abouts(), reverse=True):
             with _told(path):
                 snapshot = self._read(path)
                 self.number, self.newest = number, path
@@ -94,28 +94,23 @@ class SnapshotFiles:
 
     def reached(self) -> tuple[int, float] | None:
         """Step and arclength of the newest one, without reading its arrays."""
-        found = [(about["number"], about) for about, _ in self._abouts()]
-        if not found:
-            return None
-        newest = max(found, key=lambda entry: entry[0])[1]
-        return newest["step"], newest["s"]
+        _, _, place = max(self._abouts(), default=(0, None, None))
+        return place
 
-    def _numbers(self) -> Iterator[tuple[int, Path]]:
-        return ((about["number"], path) for about, path in self._abouts())
-
-    def _abouts(self) -> Iterator[tuple[dict[str, Any], Path]]:
+    def _abouts(self) -> Iterator[tuple[int, Path, tuple[int, float]]]:
+        """Number, path, and step and arclength of each one that can be read."""
         for path in self.paths:
             if path.exists():
                 with _told(path):
-                    yield self._about(path), path
+                    yield self._about(path)
 
-    def _about(self, path: Path) -> dict[str, Any]:
+    def _about(self, path: Path) -> tuple[int, Path, tuple[int, float]]:
         with opened_npz(path) as members:
             about = bounded_json("about", str(members["about"]))
-        numbers = [about[name] for name in ("number", "step", "s")]
-        if not all(isinstance(one, int | float) for one in numbers):
+        number, step, s = (about[name] for name in ("number", "step", "s"))
+        if not all(isinstance(one, int | float) for one in (number, step, s)):
             raise ValueError("it does not say where it is")
-        return dict(about)
+        return number, path, (step, s)
 
     def _read(self, path: Path) -> Snapshot:
         with opened_npz(path) as members:

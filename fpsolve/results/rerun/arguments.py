@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from fpsolve.density.schemes.dictionaries import scheme_from_dict
+from fpsolve.errors import NotRepeatableError
 from fpsolve.evolution.call import ARRAY, KEPT, USER_CODE, Call
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.grids.plane import PlaneGrid
@@ -17,10 +18,12 @@ from fpsolve.model.laydown import LayDownModel
 from fpsolve.model.potentials.dictionaries import potential_from_dict
 from fpsolve.paths.law_dataset import law_from_formula
 from fpsolve.paths.laws import DensityLaw
-from fpsolve.results.rerun.missing import own_code, unrecorded
 from fpsolve.spectral.bases.sectors import Sector
 
-__all__ = ["READERS", "OfOwner", "arguments_of"]
+__all__ = ["READERS", "OfOwner", "arguments_of", "unrecorded"]
+
+# Characters of a description that a message shows.
+_LONGEST = 120
 
 
 @dataclass(frozen=True)
@@ -117,7 +120,7 @@ class _Reading:
         if KEPT in value:
             return self._kept(argument, value)
         if USER_CODE in value:
-            raise own_code(argument, str(value[USER_CODE]))
+            raise _own_code(argument, str(value[USER_CODE]))
         if ARRAY in value:
             return self.call.arrays[value[ARRAY]]
         kind = next(iter(value), "")
@@ -143,17 +146,35 @@ class _Reading:
         if isinstance(held, np.ndarray) or (code and held is not None):
             return held
         if code:
-            raise own_code(argument, str(value[USER_CODE]))
+            raise _own_code(argument, str(value[USER_CODE]))
         raise unrecorded(f"its `{argument}`", f"`{self.call.function}`")
 
     def _made(self, kind: str, argument: str, about: Any) -> Any:
         try:
             return READERS[kind](about)
         except KeyError as error:
-            raise own_code(argument, f"without {error}") from None
+            raise _own_code(argument, f"without {error}") from None
         except (ValueError, TypeError) as error:
             known = getattr(self.result, "model", None)
             # What was not written to a file yet may have a user's functions.
             if kind == _MODEL and known is not None:
                 return known
-            raise own_code(argument, str(error)) from None
+            raise _own_code(argument, str(error)) from None
+
+
+def _own_code(argument: str, description: str) -> NotRepeatableError:
+    """Return the error for an argument that was a user's own code."""
+    text = description if len(description) <= _LONGEST else f"{description[:118]} …"
+    known = f" ({text})" if text else ""
+    return NotRepeatableError(
+        f"`{argument}` was your own code{known}, which no file holds; pass it as "
+        f"`fpsolve.rerun(file, {argument}=...)`."
+    )
+
+
+def unrecorded(what: str, function: str) -> NotRepeatableError:
+    """Return the error for a result that does not say enough."""
+    return NotRepeatableError(
+        f"the result does not say {what}; it was put together by hand. "
+        f"Call {function} again and save the result."
+    )
