@@ -4,25 +4,24 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fpsolve._support.netcdf import write_dataset
-from fpsolve.density.dataset import stored_parts, to_xarray
+from fpsolve._support.streaming import Streamed
 from fpsolve.density.error_laws import mean_square_force, slope_at_origin
+from fpsolve.density.layout import SOLUTION, is_saved
 from fpsolve.evolution.call import Call
-from fpsolve.evolution.decay import DecayRate, fit_decay
-from fpsolve.evolution.schedule import saved_index
+from fpsolve.evolution.decay import DecayRate
+from fpsolve.evolution.evolution import Evolution
+from fpsolve.evolution.stored import LazyDensities
 from fpsolve.grids import diagnostics
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.model.laydown import LayDownModel
-
-if TYPE_CHECKING:
-    import xarray
 
 __all__ = ["Solution"]
 
@@ -35,8 +34,8 @@ RATE_ERROR, OTHER_SCHEMES = 1 / 40, 3.0
 KINK_ERROR = 0.4
 
 
-@dataclass(frozen=True, eq=False)
-class Solution:
+@dataclass(frozen=True, eq=False, repr=False)
+class Solution(Evolution):
     """The densities p(ξ, α, s) that were saved, and series over every recorded step.
 
     Every series is an attribute: `solution.s`, `mass`, `relative_entropy`,
@@ -79,6 +78,7 @@ class Solution:
     """
 
     kind: ClassVar[str] = "solution"
+    layout = SOLUTION
 
     model: LayDownModel | None
     grid: PhaseSpaceGrid
@@ -96,20 +96,6 @@ class Solution:
     reference: Array | None = None
     call: Call | None = None
 
-    def __getattr__(self, name: str) -> Array:
-        # Only called for names that are not fields; guards against half-built
-        # objects, as pickle and copy make them.
-        series: Mapping[str, Array] = self.__dict__.get("series", {})
-        if name in series:
-            found: Array = series[name]
-            return found
-        raise AttributeError(
-            f"Solution has no attribute {name!r}; its series are {', '.join(series)}."
-        )
-
-    def __dir__(self) -> list[str]:
-        return [*super().__dir__(), *self.series]
-
     def __repr__(self) -> str:
         reached = self.series["s"][-1] if len(self.series["s"]) else float("nan")
         return (
@@ -117,22 +103,6 @@ class Solution:
             f"ds = {self.ds:g}, grid {self.grid.shape}, "
             f"{len(self.saved_s)} saved densities)"
         )
-
-    def density(self, s: float) -> Array:
-        """Saved density p at s; shape (n1, n2, n_alpha).
-
-        Raises
-        ------
-        ValueError
-            If no density was saved at s.
-        """
-        found: Array = self.densities[saved_index(self.saved_s, s, self.ds)]
-        return found
-
-    @property
-    def final(self) -> Array:
-        """Last saved density; shape (n1, n2, n_alpha)."""
-        return self.density(self.saved_s[-1] if self.saved_s.size else np.nan)
 
     def marginal(self, which: str, s: float) -> Array:
         """∫ p at s over the other variables: "xi", "alpha", "xi1" or "xi2"."""
@@ -147,20 +117,12 @@ class Solution:
         contains what a kink of B costs, 0.4 (B'(0) cell)² relative, and nothing else.
         Where the rate is not resolved, `advice` says what helps.
         """
-        known = (self.errors or {}).get("relative_entropy")
-        resolution = self._kink_error()
-        if known is None or not np.isfinite(known).all():
-            known = None
-            resolution += self._step_error()
-        return fit_decay(
-            self.series["s"],
-            self.series["relative_entropy"] - self.entropy_floor,
-            window,
-            errors=known,
-            step_error=resolution,
-        )
+        return super().entropy_rate(window)
 
-    def _kink_error(self) -> float:
+    def _above_floor(self) -> Array:
+        return self.series["relative_entropy"] - self.entropy_floor
+
+    def _of_cells(self) -> float:
         """Relative error of a decay rate from cells about a kink of B."""
         if self.model is None:
             return 0.0
@@ -169,7 +131,7 @@ class Solution:
         slope = slope_at_origin(self.model.potential, length)
         return KINK_ERROR * (slope * max(self.grid.spacing[:2])) ** 2
 
-    def _step_error(self) -> float:
+    def _of_step(self, above: Array, window: tuple[float, float] | None) -> float:
         """Relative error of a decay rate from the step; 0 without a model."""
         if self.model is None:
             return 0.0
@@ -179,11 +141,20 @@ class Solution:
             error *= OTHER_SCHEMES
         return error if self.scheme["order"] > 1 else math.sqrt(error)
 
-    def to_xarray(self) -> xarray.Dataset:
-        """Labelled Dataset: densities (s, xi1, xi2, alpha), series over step."""
-        return to_xarray(self)
-
     def save(self, path: str | Path, engine: str | None = None) -> Path:
-        """Write the solution to netCDF, or to zarr for a path that ends in .zarr."""
-        dataset, streamed = stored_parts(self)
-        return write_dataset(dataset, path, engine, streamed)
+        """Write the solution to netCDF, or to zarr for a path that ends in .zarr.
+
+        Densities that are on the disk are read one by one.
+        """
+        densities: Any = self.densities
+        if not isinstance(densities, LazyDensities):
+            return super().save(path, engine)
+        # One number in the place of all, which takes no memory.
+        nothing = np.broadcast_to(np.float64(0.0), densities.shape)
+        start = None if is_saved(self) else self.initial_density
+        rest = replace(self, densities=nothing, initial_density=start).to_xarray()
+        about = rest["density"]
+        dims = tuple(map(str, about.dims))
+        streamed = Streamed("density", dims, densities.shape, densities.dtype,
+                            densities, about.attrs)  # fmt: skip
+        return write_dataset(rest.drop_vars("density"), path, engine, streamed)

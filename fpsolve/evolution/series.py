@@ -4,10 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
-
-if TYPE_CHECKING:
-    import xarray as xr
+from typing import Any
 
 __all__ = [
     "COORDINATES",
@@ -17,8 +14,6 @@ __all__ = [
     "Series",
     "is_extrapolated",
     "long_name",
-    "read_errors",
-    "read_series",
 ]
 
 DENSITY = "probability density p(s, ξ₁, ξ₂, α)"
@@ -119,21 +114,3 @@ def long_name(variable: str) -> str:
     known = SERIES.get(quantity)
     name = _ERRORS.get(quantity) or (known.words if known else quantity)
     return name if quantity == variable else f"estimated error of: {name}"
-
-
-def read_series(dataset: xr.Dataset, dimension: str) -> dict[str, Any]:
-    """Return every recorded series of a solution, s first; errors are left out."""
-    series = {"s": dataset["s_step"].values}
-    for name, variable in dataset.data_vars.items():
-        if variable.dims == (dimension,) and not str(name).endswith("_error"):
-            series[str(name)] = variable.values
-    return series
-
-
-def read_errors(dataset: xr.Dataset) -> dict[str, Any]:
-    """Return every error estimate of a solution by the name of its quantity."""
-    return {
-        str(name).removesuffix("_error"): variable.values
-        for name, variable in dataset.data_vars.items()
-        if str(name).endswith("_error")
-    }

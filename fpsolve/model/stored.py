@@ -66,7 +66,7 @@ def read_model(
         warnings.warn(
             f"the model could not be read back, so `model` is None: {error}",
             UserWarning,
-            stacklevel=5,
+            stacklevel=7,
         )
         return None
 

@@ -10,7 +10,8 @@ import numpy as np
 
 from fpsolve._support.checks import construct
 from fpsolve._support.digests import SAMPLED, digest_of, plain
-from fpsolve._support.labels import labels
+from fpsolve._support.labels import labels, to_json
+from fpsolve.evolution.layout import Part, Source, Variables
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.model.potentials.dictionaries import potential_from_dict
 from fpsolve.paths.ensemble import START_BLOCK, GivenStart
@@ -20,13 +21,7 @@ from fpsolve.paths.randomness import start_generator
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = [
-    "FORMULAS",
-    "describe_law",
-    "law_from_formula",
-    "law_variables",
-    "read_law",
-]
+__all__ = ["FORMULAS", "Law", "describe_law", "law_from_formula"]
 
 # Stands in `provenance` for a law that cannot be read back.
 _UNREADABLE = "initial_description"
@@ -58,38 +53,46 @@ def _digest_of_draws(law: Any) -> str | None:
         return None
 
 
-def law_variables(law: Any) -> dict[str, Any]:
-    """Return the variables that hold the arrays of a law."""
-    if isinstance(law, DensityLaw):
-        name = "probability density of the start"
-        return {"initial_density": (_DENSITY, np.asarray(law.p), labels(name))}
-    if isinstance(law, GivenStart):
-        xi, alpha = "deviation ξ given for the start", "angle α given for the start"
-        return {
-            "initial_xi": (("initial_path", "component"), law.xi, labels(xi)),
-            "initial_alpha": (("initial_path",), law.alpha, labels(alpha)),
-        }
-    return {}
-
-
-def read_law(
-    description: Mapping[str, Any], dataset: xr.Dataset, provenance: dict[str, Any]
-) -> Any:
-    """Return the law, or None with a warning if it was a user's own.
+class Law(Part):
+    """The law of the start; None with a warning if it was a user's own.
 
     Its description is added to the provenance then.
     """
-    try:
-        return _law(dict(description), dataset)
-    except ValueError as error:
-        provenance[_UNREADABLE] = dict(description)
-        warnings.warn(
-            f"the law of the start could not be read back, so `initial` is None: "
-            f"{error}",
-            UserWarning,
-            stacklevel=5,
-        )
-        return None
+
+    needed_attributes = ("initial",)
+
+    def attributes(self, result: Any) -> dict[str, Any]:
+        """The law without its arrays."""
+        return {"initial": to_json(describe_law(result.initial, result.provenance))}
+
+    def variables(self, result: Any) -> Variables:
+        """The arrays of the law."""
+        law = result.initial
+        if isinstance(law, DensityLaw):
+            name = "probability density of the start"
+            return {"initial_density": (_DENSITY, np.asarray(law.p), labels(name))}
+        if isinstance(law, GivenStart):
+            xi, alpha = "deviation ξ given for the start", "angle α given for the start"
+            return {
+                "initial_xi": (("initial_path", "component"), law.xi, labels(xi)),
+                "initial_alpha": (("initial_path",), law.alpha, labels(alpha)),
+            }
+        return {}
+
+    def read(self, source: Source) -> dict[str, Any]:
+        """The law."""
+        description = source.about["initial"]
+        try:
+            return {"initial": _law(dict(description), source.dataset)}
+        except ValueError as error:
+            source.provenance[_UNREADABLE] = dict(description)
+            warnings.warn(
+                f"the law of the start could not be read back, so `initial` is None: "
+                f"{error}",
+                UserWarning,
+                stacklevel=6,
+            )
+            return {"initial": None}
 
 
 def _law(parameters: dict[str, Any], dataset: xr.Dataset) -> Any:

@@ -5,29 +5,25 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar, cast
+from typing import Any, ClassVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fpsolve._support.checks import check_integer, check_real
 from fpsolve._support.memory import check_memory
-from fpsolve._support.netcdf import write_dataset
 from fpsolve.evolution.call import Call
+from fpsolve.evolution.saved import Saved
 from fpsolve.evolution.schedule import saved_index
 from fpsolve.grids.phase_space import PhaseSpaceGrid, check_grid
 from fpsolve.model.laydown import LayDownModel
 from fpsolve.paths.averages import Observable, observed, time_averages
-from fpsolve.paths.dataset import to_xarray
 from fpsolve.paths.ensemble import Ensemble, angle_of
 from fpsolve.paths.histogram import Histogram, count_paths, wrapped
+from fpsolve.paths.layout import PATHS
 from fpsolve.paths.moments import Moments
 from fpsolve.paths.runner import completed, required_memory, stepwise
 from fpsolve.paths.trajectory import Trajectory, traced, trajectory
-
-if TYPE_CHECKING:
-    import xarray
 
 __all__ = ["Paths"]
 
@@ -35,7 +31,7 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Paths:
+class Paths(Saved):
     """Paths (ξ, α) of the basic model (6) at the saved arclengths.
 
     Everything is dimensionless, angles are in radians. Estimates come with the
@@ -66,6 +62,7 @@ class Paths:
     """
 
     kind: ClassVar[str] = "paths"
+    layout = PATHS
 
     ensemble: Ensemble
     s: Array
@@ -308,14 +305,6 @@ class Paths:
                 "them again."
             )
         return self.ensemble.initial_state(first, n)
-
-    def to_xarray(self) -> xarray.Dataset:
-        """Labelled Dataset of positions, moments and histograms."""
-        return to_xarray(self)
-
-    def save(self, path: str | Path, engine: str | None = None) -> Path:
-        """Write the paths to netCDF, or to zarr for a path that ends in .zarr."""
-        return write_dataset(self.to_xarray(), path, engine)
 
     def _kept(self, array: Array) -> Array:
         if not self.kept:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from fpsolve._support.checks import shown
 from fpsolve._support.declared import declared
 from fpsolve._support.labels import FORMAT, check_complete
+from fpsolve.evolution.saved import restored
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -28,8 +29,8 @@ class Kind:
     function : str
         "module:name" of the public function that makes one, or the function itself.
     reading : str
-        "module:name" of what makes the result from its dataset; empty for a study,
-        which is a dataset.
+        "module:name" of the class of the result, or of what makes one from its
+        dataset; empty for a study, which is a dataset.
     counts : str
         What a progress bar counts while it is computed: "steps" (with s), "cases", or
         nothing.
@@ -51,53 +52,53 @@ _POTENTIAL = ("potential", "formula", "versions")
 KINDS = {
     "solution": Kind(
         "solutions", "fpsolve.density.solve:solve",
-        "fpsolve.density.reading:from_xarray", counts="steps",
+        "fpsolve.density.solution:Solution", counts="steps",
     ),
     "paths": Kind(
         "paths", "fpsolve.paths.sampling:sample_paths",
-        "fpsolve.paths.reading:from_xarray", counts="steps",
+        "fpsolve.paths.result:Paths", counts="steps",
     ),
     "hydrodynamic": Kind(
         "solutions of the hydrodynamic limit",
         "fpsolve.reduced.hydrodynamic.limit:HydrodynamicLimit.solve",
-        "fpsolve.reduced.hydrodynamic.reading:from_xarray", counts="steps",
+        "fpsolve.reduced.hydrodynamic.reading:read_solution", counts="steps",
     ),
     "energy": Kind(
         "solutions of the energy process",
         "fpsolve.reduced.energy.process:EnergyProcess.solve",
-        "fpsolve.reduced.energy.reading:from_xarray", counts="steps",
+        "fpsolve.reduced.energy.reading:read_solution", counts="steps",
     ),
     "steady-state": Kind(
         "stationary densities", "fpsolve.density.steady_state:steady_state",
-        "fpsolve.density.stationary.reading:from_xarray",
+        "fpsolve.density.stationary.result:SteadyState",
     ),
     "spectral": Kind(
         "expansions in time", "fpsolve.spectral.evolution.evolution:spectral_solve",
-        "fpsolve.spectral.evolution.reading:solution_from_xarray",
+        "fpsolve.spectral.evolution.solution:SpectralSolution",
     ),
     "spectral-steady-state": Kind(
         "stationary expansions",
         "fpsolve.spectral.evolution.steady:spectral_steady_state",
-        "fpsolve.spectral.evolution.reading:steady_from_xarray",
+        "fpsolve.spectral.evolution.steady:SpectralSteadyState",
     ),
     "energy-paths": Kind(
         "paths of the energy process",
         "fpsolve.reduced.energy.process:EnergyProcess.sample",
-        "fpsolve.reduced.energy.paths_reading:from_xarray",
+        "fpsolve.reduced.energy.reading:read_paths",
     ),
     "hydrodynamic-paths": Kind(
         "paths of the hydrodynamic limit",
         "fpsolve.reduced.hydrodynamic.limit:HydrodynamicLimit.sample",
-        "fpsolve.reduced.hydrodynamic.paths_reading:from_xarray",
+        "fpsolve.reduced.hydrodynamic.sampling:HydrodynamicPaths",
     ),
     "check": Kind(
         "checks of density against paths",
         "fpsolve.studies.agreement.cross_check:cross_check",
-        "fpsolve.studies.agreement.reading:from_xarray", counts="steps",
+        "fpsolve.studies.agreement.check:CrossCheck", counts="steps",
     ),
     "spectrum": Kind(
         "spectra", "fpsolve.spectral.eigen.spectrum:spectrum",
-        "fpsolve.spectral.eigen.reading:from_xarray",
+        "fpsolve.spectral.eigen.spectrum:Spectrum",
     ),
     "rate": Kind(
         "rates against the noise",
@@ -195,7 +196,8 @@ def from_xarray(dataset: xr.Dataset) -> Any:
     """
     kind = KINDS[kind_of(dataset)]
     if kind.reading:
-        return named(kind.reading)(dataset)
+        made = named(kind.reading)
+        return restored(made, dataset) if isinstance(made, type) else made(dataset)
     check_complete(dataset, kind.variables, kind.attributes)
     return dataset
 

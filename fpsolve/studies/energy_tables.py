@@ -10,7 +10,7 @@ from fpsolve._support.checks import check_integer
 from fpsolve._support.labels import labels, made_with, marked
 from fpsolve.evolution.call import recorded
 from fpsolve.model.potentials.potential import Potential
-from fpsolve.reduced.energy.dataset import process_attributes
+from fpsolve.reduced.energy.layout import process_attributes
 
 if TYPE_CHECKING:
     import xarray as xr

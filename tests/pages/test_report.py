@@ -402,7 +402,7 @@ def test_wrong_arguments_are_named(tmp_path):
 def test_a_check_comes_back_from_its_dataset():
     from result_files import cross_check
 
-    from fpsolve.studies.agreement.reading import from_xarray
+    from fpsolve.results.kinds import from_xarray
 
     check = cross_check()
     back = from_xarray(check.to_xarray())

@@ -27,7 +27,6 @@ from fpsolve.plotting.rates import (
     plot_spectrum,
 )
 from fpsolve.spectral.bases.sectors import Truncation
-from fpsolve.spectral.eigen.dataset import spectrum_dataset
 from fpsolve.spectral.eigen.spectrum import spectrum
 from fpsolve.studies.observables import default_observables
 from fpsolve.studies.rates.cases import PARTS
@@ -152,7 +151,7 @@ def test_figures_are_drawn(study):
 
 def test_a_spectrum_becomes_a_dataset():
     found = spectrum(LayDownModel(QUADRATIC, 1.0), 3, tolerance=1e-3)
-    dataset = spectrum_dataset(found)
+    dataset = found.to_xarray()
     np.testing.assert_array_equal(dataset["real"], found.eigenvalues.real)
     assert dataset["sector"].values[0] == "M = ±1"
     assert dataset.attrs["gap"] == found.gap

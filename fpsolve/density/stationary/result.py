@@ -4,20 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve.density.stationary.dataset import to_xarray
+from fpsolve.density.stationary.layout import STATIONARY
 from fpsolve.evolution.call import Call
 from fpsolve.evolution.saved import Saved
 from fpsolve.grids import diagnostics
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.model.laydown import LayDownModel
-
-if TYPE_CHECKING:
-    import xarray
 
 __all__ = ["SteadyState"]
 
@@ -62,6 +59,7 @@ class SteadyState(Saved):
     """
 
     kind: ClassVar[str] = "steady-state"
+    layout = STATIONARY
 
     density: Array
     residual: float
@@ -92,10 +90,6 @@ class SteadyState(Saved):
     def marginal(self, which: str) -> Array:
         """∫ p over the other variables: "xi", "alpha", "xi1" or "xi2"."""
         return diagnostics.marginal(self.density, self.grid, which)
-
-    def to_xarray(self) -> xarray.Dataset:
-        """Labelled Dataset: density (xi1, xi2, alpha), moments, errors of all."""
-        return to_xarray(self)
 
     def moments(self) -> dict[str, float]:
         """E ξ, covariance of ξ, E cos α (−v for every potential), E sin α (0)."""

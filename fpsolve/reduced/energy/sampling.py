@@ -6,7 +6,7 @@ import sys
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -19,11 +19,8 @@ from fpsolve.evolution.schedule import make_schedule
 from fpsolve.reduced.energy.averages import OrbitAverages
 from fpsolve.reduced.energy.checks import check_energies
 from fpsolve.reduced.energy.grid import EnergyGrid
-from fpsolve.reduced.energy.paths_dataset import to_xarray
+from fpsolve.reduced.energy.layout import PATHS
 from fpsolve.reduced.energy.steps import Sphere, Transition
-
-if TYPE_CHECKING:
-    import xarray
 
 __all__ = ["EnergyPaths", "sample_energies"]
 
@@ -54,6 +51,7 @@ class EnergyPaths(Saved):
     """
 
     kind: ClassVar[str] = "energy-paths"
+    layout = PATHS
 
     s: Array
     g: Array
@@ -63,10 +61,6 @@ class EnergyPaths(Saved):
     process: Any = None
     call: Call | None = None
     provenance: dict[str, Any] = field(default_factory=dict)
-
-    def to_xarray(self) -> xarray.Dataset:
-        """Labelled Dataset: energies over (s, path)."""
-        return to_xarray(self)
 
     def histogram(self, grid: EnergyGrid) -> Array:
         """Share of the paths in each cell at each saved s, (n_saved, n_cells)."""

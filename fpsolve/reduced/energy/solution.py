@@ -4,19 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fpsolve.evolution.call import Call
-from fpsolve.evolution.saved import Saved
 from fpsolve.evolution.schedule import saved_index
-from fpsolve.reduced.energy.dataset import to_xarray
 from fpsolve.reduced.energy.grid import EnergyGrid
-
-if TYPE_CHECKING:
-    import xarray
+from fpsolve.reduced.energy.layout import SOLUTION
+from fpsolve.reduced.relaxed import Relaxed
 
 __all__ = ["EnergySolution"]
 
@@ -24,8 +21,10 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class EnergySolution(Saved):
+class EnergySolution(Relaxed):
     """Densities p(g, s) of (16) that were saved, and series over every recorded step.
+
+    Every series is an attribute but "mass", which is a method here.
 
     Attributes
     ----------
@@ -53,6 +52,7 @@ class EnergySolution(Saved):
     """
 
     kind: ClassVar[str] = "energy"
+    layout = SOLUTION
 
     process: Any
     grid: EnergyGrid
@@ -68,29 +68,9 @@ class EnergySolution(Saved):
     call: Call | None = None
 
     @property
-    def s(self) -> Array:
-        """Recorded arclengths."""
-        return self.series["s"]
-
-    @property
-    def relative_entropy(self) -> Array:
-        """H of the cell masses relative to the stationary law, at `s`."""
-        return self.series["relative_entropy"]
-
-    @property
     def densities(self) -> Array:
         """Cell means of p(g, s), shape (n_saved, n_cells)."""
         return self.masses / self.grid.widths
-
-    def density(self, s: float) -> Array:
-        """Cell means of p(g) at a saved s, shape (n_cells,).
-
-        Raises
-        ------
-        ValueError
-            If nothing was saved at s.
-        """
-        return np.asarray(self.densities[saved_index(self.saved_s, s, self.ds)])
 
     def mass(self, s: float) -> Array:
         """Cell masses at a saved s, shape (n_cells,); ValueError if none were saved."""
@@ -103,10 +83,6 @@ class EnergySolution(Saved):
     def distribution(self, s: float) -> Array:
         """P(G <= face) at a saved s for the faces of the grid, (n_cells + 1,)."""
         return np.concatenate([[0.0], np.cumsum(self.mass(s))])
-
-    def to_xarray(self) -> xarray.Dataset:
-        """Labelled Dataset: density (s, g), series over step, parameters."""
-        return to_xarray(self)
 
     def __repr__(self) -> str:
         return (

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,11 +21,8 @@ from fpsolve.evolution.schedule import checked_stops as checked_series
 from fpsolve.grids.plane import PlaneGrid
 from fpsolve.model.laydown import LayDownModel
 from fpsolve.model.potentials.quadratic import QuadraticPotential
+from fpsolve.reduced.hydrodynamic.layout import PATHS
 from fpsolve.reduced.hydrodynamic.ornstein_uhlenbeck import OrnsteinUhlenbeckLimit
-from fpsolve.reduced.hydrodynamic.paths_dataset import to_xarray
-
-if TYPE_CHECKING:
-    import xarray
 
 __all__ = ["METHODS", "HydrodynamicPaths", "sample"]
 
@@ -54,6 +51,7 @@ class HydrodynamicPaths(Saved):
     """
 
     kind: ClassVar[str] = "hydrodynamic-paths"
+    layout = PATHS
 
     s: Array
     xi: Array
@@ -62,10 +60,6 @@ class HydrodynamicPaths(Saved):
     model: LayDownModel | None = None
     call: Call | None = None
     provenance: dict[str, Any] = field(default_factory=dict)
-
-    def to_xarray(self) -> xarray.Dataset:
-        """Labelled Dataset: ξ over (s, path, component), means and covariances."""
-        return to_xarray(self)
 
     @property
     def n_paths(self) -> int:

@@ -4,23 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve._support.netcdf import write_dataset
 from fpsolve.evolution.call import Call
-from fpsolve.evolution.decay import DecayRate, fit_decay
-from fpsolve.evolution.schedule import saved_index
 from fpsolve.grids.plane import PlaneGrid
-from fpsolve.reduced.hydrodynamic.dataset import to_xarray
 from fpsolve.reduced.hydrodynamic.equation import LimitEquation
-
-if TYPE_CHECKING:
-    import xarray
-
+from fpsolve.reduced.hydrodynamic.layout import SOLUTION
+from fpsolve.reduced.relaxed import Relaxed
 
 __all__ = ["HydrodynamicSolution", "HydrodynamicSteadyState"]
 
@@ -61,8 +54,8 @@ class HydrodynamicSteadyState:
         )
 
 
-@dataclass(frozen=True, eq=False)
-class HydrodynamicSolution:
+@dataclass(frozen=True, eq=False, repr=False)
+class HydrodynamicSolution(Relaxed):
     """The densities 𝒫(ξ, s) that were saved, and series over every recorded step.
 
     Every series is an attribute: `solution.s`, `mass`, `relative_entropy` (to the
@@ -95,6 +88,7 @@ class HydrodynamicSolution:
     """
 
     kind: ClassVar[str] = "hydrodynamic"
+    layout = SOLUTION
 
     limit: LimitEquation | None
     grid: PlaneGrid
@@ -109,61 +103,9 @@ class HydrodynamicSolution:
     status: str = "finished"
     call: Call | None = None
 
-    def __getattr__(self, name: str) -> Array:
-        # Only called for names that are not fields; guards against half-built
-        # objects, as pickle and copy make them.
-        series: Mapping[str, Array] = self.__dict__.get("series", {})
-        if name in series:
-            found: Array = series[name]
-            return found
-        raise AttributeError(
-            f"HydrodynamicSolution has no attribute {name!r}; its series are "
-            f"{', '.join(series)}."
-        )
-
-    def __dir__(self) -> list[str]:
-        return [*super().__dir__(), *self.series]
-
     def __repr__(self) -> str:
         return (
             f"HydrodynamicSolution(to s = {self.series['s'][-1]:g}, {self.method}, "
             f"ds = {self.ds:g}, grid {self.grid.shape}, {len(self.saved_s)} saved "
             "densities)"
         )
-
-    def density(self, s: float) -> Array:
-        """Saved density 𝒫 at s; shape (n1, n2).
-
-        Raises
-        ------
-        ValueError
-            If no density was saved at s.
-        """
-        found: Array = self.densities[saved_index(self.saved_s, s, self.ds)]
-        return found
-
-    def entropy_rate(self, window: tuple[float, float] | None = None) -> DecayRate:
-        """Rate λ of H ~ e^{−λs}, fitted on a window of s; tends to twice the gap.
-
-        Twice that of the grid: its error contains that of the step, from `errors` if
-        there are any, and nothing of the cells. An implicit step of length h takes a
-        mode e^{−λs/2} by a factor of which the rate is short by the share λh/4
-        (backward_euler) or (λh)²/40 (sdirk2).
-        """
-        s, entropy = self.series["s"], self.series["relative_entropy"]
-        known = (self.errors or {}).get("relative_entropy")
-        if known is not None:
-            return fit_decay(s, entropy, window, errors=known)
-        turn = fit_decay(s, entropy, window).rate * self.ds
-        first_order = self.method == "backward_euler"
-        return fit_decay(
-            s, entropy, window, step_error=turn / 4 if first_order else turn**2 / 40
-        )
-
-    def to_xarray(self) -> xarray.Dataset:
-        """Labelled Dataset: densities (s, xi1, xi2), series over the steps."""
-        return to_xarray(self)
-
-    def save(self, path: str | Path, engine: str | None = None) -> Path:
-        """Write the solution to netCDF, or to zarr for a path that ends in .zarr."""
-        return write_dataset(self.to_xarray(), path, engine)

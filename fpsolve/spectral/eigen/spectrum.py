@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 import psutil
@@ -20,13 +20,10 @@ from fpsolve.model.laydown import LayDownModel
 from fpsolve.model.potentials.quadratic import QuadraticPotential
 from fpsolve.spectral.bases.choice import check_resolved, discretisation_for
 from fpsolve.spectral.bases.sectors import Discretisation, Sector, Truncation
-from fpsolve.spectral.eigen.dataset import spectrum_dataset
+from fpsolve.spectral.eigen.layout import SPECTRUM
 from fpsolve.spectral.eigen.refinement import Refinement, left_vector, with_residual
 from fpsolve.spectral.eigen.survey import Mode, Scale
 from fpsolve.spectral.work import DEFAULT_WORK, Work
-
-if TYPE_CHECKING:
-    import xarray
 
 __all__ = ["Spectrum", "spectrum"]
 
@@ -73,6 +70,7 @@ class Spectrum(Saved):
     """
 
     kind: ClassVar[str] = "spectrum"
+    layout = SPECTRUM
 
     model: LayDownModel
     eigenvalues: Complex
@@ -131,10 +129,6 @@ class Spectrum(Saved):
         h = basis.values(left, mode.sector, mode.truncation, grid)
         reference: Complex = h * self.model.equilibrium(*grid.plane())[:, :, None]
         return reference
-
-    def to_xarray(self) -> xarray.Dataset:
-        """Labelled Dataset: eigenvalues with errors over `index`, slowest first."""
-        return spectrum_dataset(self)
 
     @property
     def _basis(self) -> Discretisation:

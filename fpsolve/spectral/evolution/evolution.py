@@ -17,13 +17,13 @@ from fpsolve._support.memory import allowed_memory
 from fpsolve.errors import MemoryLimitError
 from fpsolve.evolution.call import recorded
 from fpsolve.grids.phase_space import PhaseSpaceGrid
-from fpsolve.grids.row_sums import MOMENTS
 from fpsolve.model.laydown import LayDownModel
 from fpsolve.model.potentials.quadratic import QuadraticPotential
 from fpsolve.spectral.agreement import excess, failure
 from fpsolve.spectral.evolution import quadrature
 from fpsolve.spectral.evolution.expansion import Expansion, spread
 from fpsolve.spectral.evolution.exponential import ForwardOperator
+from fpsolve.spectral.evolution.layout import SERIES
 from fpsolve.spectral.evolution.projection import DensityStart, GaussianStart
 from fpsolve.spectral.evolution.quadratic import (
     check_model,
@@ -36,7 +36,6 @@ from fpsolve.spectral.work import OutOfWork, Work
 __all__ = ["spectral_solve"]
 
 Array = NDArray[np.float64]
-SERIES = ("mass", "relative_entropy", *MOMENTS)
 # Refinements before giving up; each multiplies degrees and harmonics by RATIO and
 # divides what is neglected by TIGHTER.
 LEVELS = 6

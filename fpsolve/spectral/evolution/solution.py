@@ -4,25 +4,22 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fpsolve._support.checks import told_apart
 from fpsolve.evolution.call import Call
-from fpsolve.evolution.saved import Saved
+from fpsolve.evolution.evolution import WithSeries
 from fpsolve.evolution.schedule import index_of
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.model.laydown import LayDownModel
 from fpsolve.spectral.evolution import quadrature
-from fpsolve.spectral.evolution.dataset import solution_dataset
 from fpsolve.spectral.evolution.expansion import Expansion
+from fpsolve.spectral.evolution.layout import SOLUTION
 from fpsolve.spectral.evolution.quadratic import quadratic
 from fpsolve.spectral.evolution.steady import SpectralSteadyState, spectral_steady_state
-
-if TYPE_CHECKING:
-    import xarray
 
 __all__ = ["SpectralSolution"]
 
@@ -30,7 +27,7 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class SpectralSolution(Saved):
+class SpectralSolution(WithSeries):
     """H(s) and moments of p(ξ, α, s), with an error estimate for every number.
 
     Attributes `mass`, `relative_entropy`, `mean_xi1`, `mean_xi2`, `variance_xi1`,
@@ -57,6 +54,7 @@ class SpectralSolution(Saved):
     """
 
     kind: ClassVar[str] = "spectral"
+    layout = SOLUTION
 
     model: LayDownModel
     s: Array
@@ -67,18 +65,6 @@ class SpectralSolution(Saved):
     _expansions: tuple[Expansion, ...]
     call: Call | None = None
     provenance: dict[str, Any] = field(default_factory=dict)
-
-    def __getattr__(self, name: str) -> Array:
-        series: dict[str, Array] = self.__dict__.get("series", {})
-        if name in series:
-            return series[name]
-        raise AttributeError(
-            f"SpectralSolution has no attribute {name!r}; its series are "
-            f"{', '.join(series)}."
-        )
-
-    def __dir__(self) -> list[str]:
-        return [*super().__dir__(), *self.series]
 
     def __repr__(self) -> str:
         worst = max(float(values.max()) for values in self.errors.values())
@@ -103,10 +89,6 @@ class SpectralSolution(Saved):
             raise ValueError(f"`s` must be one of {', '.join(known)}, got {got}.")
         potential = quadratic(self.model)
         return quadrature.density_on(self._expansions[place], grid, potential)
-
-    def to_xarray(self) -> xarray.Dataset:
-        """Labelled Dataset: series over s with errors, and coefficients."""
-        return solution_dataset(self)
 
     @cached_property
     def steady_state(self) -> SpectralSteadyState:

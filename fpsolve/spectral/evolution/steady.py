@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,17 +19,14 @@ from fpsolve.evolution.saved import Saved
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.model.laydown import LayDownModel
 from fpsolve.spectral.evolution import quadrature
-from fpsolve.spectral.evolution.dataset import steady_dataset
 from fpsolve.spectral.evolution.expansion import Expansion, Limits
 from fpsolve.spectral.evolution.exponential import ForwardOperator
+from fpsolve.spectral.evolution.layout import STEADY
 from fpsolve.spectral.evolution.quadratic import (
     check_model,
     checked_tolerance,
     quadratic,
 )
-
-if TYPE_CHECKING:
-    import xarray
 
 __all__ = ["SpectralSteadyState", "spectral_steady_state"]
 
@@ -68,6 +65,7 @@ class SpectralSteadyState(Saved):
     """
 
     kind: ClassVar[str] = "spectral-steady-state"
+    layout = STEADY
 
     model: LayDownModel
     moments: dict[str, float]
@@ -108,10 +106,6 @@ class SpectralSteadyState(Saved):
             )
             raise ToleranceError(error, tolerance, remedy)
         return p
-
-    def to_xarray(self) -> xarray.Dataset:
-        """Labelled Dataset: moments with errors, and coefficients."""
-        return steady_dataset(self)
 
     def density_error(self, grid: PhaseSpaceGrid) -> float:
         """∫ |p − p′| dξ dα on a grid, p′ from the next coarser truncation."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,12 +15,9 @@ from fpsolve.evolution.saved import Saved
 from fpsolve.evolution.schedule import index_of
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.model.laydown import LayDownModel
-from fpsolve.studies.agreement.dataset import to_xarray
+from fpsolve.studies.agreement.layout import CHECK
 from fpsolve.studies.agreement.outcome import AgreementTest
 from fpsolve.studies.agreement.wording import report
-
-if TYPE_CHECKING:
-    import xarray
 
 __all__ = ["CrossCheck"]
 
@@ -57,6 +54,7 @@ class CrossCheck(Saved):
     """
 
     kind: ClassVar[str] = "check"
+    layout = CHECK
 
     model: LayDownModel | None
     grid: PhaseSpaceGrid
@@ -147,10 +145,6 @@ class CrossCheck(Saved):
                 for test in self.tests
             ],
         }
-
-    def to_xarray(self) -> xarray.Dataset:
-        """Labelled Dataset: every number of the tests (s, test), marginals (s, ...)."""
-        return to_xarray(self)
 
 
 def _known(value: Any) -> Any:

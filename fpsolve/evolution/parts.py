@@ -1,0 +1,256 @@
+"""The parts that results of several kinds have in common."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from fpsolve._support.labels import labels, to_json
+from fpsolve.evolution.layout import (
+    Attribute,
+    Part,
+    Source,
+    Variable,
+    Variables,
+    check_dimensions,
+)
+from fpsolve.evolution.series import COORDINATES, long_name
+from fpsolve.model.stored import describe_model, read_model
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["STATUS", "STEP", "Arclengths", "Model", "OnGrid", "Recorded"]
+
+_STATUS = ("finished", "interrupted", "failed")
+# Cell centres are stored as they were computed; a later version may round otherwise.
+_SAME = 1e-9
+
+
+def checked_step(ds: Any) -> float:
+    """The step; ValueError unless it is positive."""
+    if not 0 < float(ds) < math.inf:
+        raise ValueError(f"`ds` must be positive, got {float(ds):g}")
+    return float(ds)
+
+
+def checked_status(status: str) -> str:
+    """The status; ValueError unless it is how a run can end."""
+    if status not in _STATUS:
+        raise ValueError(
+            f"`status` must be one of {', '.join(map(repr, _STATUS))}, got {status!r}"
+        )
+    return status
+
+
+STEP = Attribute("ds", make=checked_step)
+STATUS = Attribute("status", make=checked_status)
+
+
+@dataclass(frozen=True)
+class Model(Part):
+    """A model, or what owns one, as the attributes `equation` and `model`.
+
+    One of a user's own functions cannot be read back: the field is None then, with a
+    warning, and its description and equation are in `provenance`.
+
+    Attributes
+    ----------
+    field : str
+    equation : str
+        Attribute of the model: which of its equations is told.
+    owned : bool
+        Whether the field is made of the model by what `owners` of the source names.
+    """
+
+    field: str = "model"
+    equation: str = "equation"
+    owned: bool = False
+
+    @property
+    def needed_attributes(self) -> tuple[str, ...]:
+        """The description."""
+        return ("model",)
+
+    def attributes(self, result: Any) -> dict[str, Any]:
+        """What is solved, and the model."""
+        model = getattr(result, self.field)
+        if self.owned and model is not None:
+            model = model.model
+        equation = None if model is None else getattr(model, self.equation)
+        return describe_model(model, equation, result.provenance)
+
+    def read(self, source: Source) -> dict[str, Any]:
+        """The model; None if it cannot be made again."""
+        # A check against a density without a model has none.
+        known = "model" in source.about
+        model = read_model(source.about, source.provenance) if known else None
+        if self.owned and model is not None:
+            return {self.field: source.owners[self.field](model)}
+        return {self.field: model}
+
+
+@dataclass(frozen=True)
+class Arclengths(Variable):
+    """A coordinate of arclengths, which increase."""
+
+    def variables(self, result: Any) -> Variables:
+        """None: it is a coordinate."""
+        return {}
+
+    def coordinates(self, result: Any) -> Variables:
+        """The arclengths."""
+        return super().variables(result)
+
+    def read(self, source: Source) -> dict[str, Any]:
+        """The arclengths."""
+        found = super().read(source)
+        check_increasing(self.name, source.dataset)
+        return found
+
+
+SAVED = Arclengths("s", ("s",), COORDINATES["s"], "saved_s")
+
+
+@dataclass(frozen=True)
+class OnGrid(Part):
+    """A grid and densities on it, over the axes of the grid.
+
+    Attributes
+    ----------
+    grid : type
+        With `shape`, the centres of its axes by their names, `to_dict`, `from_dict`.
+    axes : tuple of str
+    words : str
+        Long name of the densities.
+    field : str
+        The densities in the result.
+    over : tuple of str
+        Dimensions before those of the grid.
+    """
+
+    grid: Any
+    axes: tuple[str, ...]
+    words: str
+    field: str = "densities"
+    over: tuple[str, ...] = ("s",)
+
+    @property
+    def needed(self) -> tuple[str, ...]:
+        """The densities."""
+        return ("density",)
+
+    @property
+    def needed_attributes(self) -> tuple[str, ...]:
+        """The grid."""
+        return ("grid",)
+
+    def variables(self, result: Any) -> Variables:
+        """The densities, of which arrays share the memory."""
+        densities = np.asarray(getattr(result, self.field))
+        dims = (*self.over, *self.axes)
+        return {"density": (dims, densities, labels(self.words))}
+
+    def coordinates(self, result: Any) -> Variables:
+        """The centres of the cells along every axis."""
+        return {
+            name: (name, getattr(result.grid, name), labels(COORDINATES[name]))
+            for name in self.axes
+        }
+
+    def attributes(self, result: Any) -> dict[str, Any]:
+        """The grid as JSON."""
+        return {"grid": to_json(result.grid.to_dict())}
+
+    def read(self, source: Source) -> dict[str, Any]:
+        """The grid and the densities; both must fit, and the centres to the grid."""
+        grid = self.grid.from_dict(source.about["grid"])
+        self._check(source.dataset, grid)
+        return {"grid": grid, self.field: source.dataset["density"].values}
+
+    def _check(self, dataset: xr.Dataset, grid: Any) -> None:
+        density = dataset["density"]
+        expected = (*(dataset.sizes[name] for name in self.over), *grid.shape)
+        if density.dims != (*self.over, *self.axes) or density.shape != expected:
+            parts = " and ".join(f"`{name}`" for name in (*self.over, "grid"))
+            raise ValueError(
+                f"`density` must have the shape {expected} of {parts}, got "
+                f"{density.shape} over {', '.join(map(str, density.dims))}"
+            )
+        for name in self.axes:
+            centres = getattr(grid, name)
+            if not np.allclose(dataset[name], centres, rtol=_SAME, atol=_SAME):
+                raise ValueError(
+                    f"`{name}` must be the cell centres of `grid`, got others"
+                )
+
+
+@dataclass(frozen=True)
+class Recorded(Part):
+    """`series` over every recorded step, and `errors` of them and of what was saved.
+
+    Attributes
+    ----------
+    over : str
+        Dimension of the recorded steps; their arclengths are the coordinate `s_step`.
+    words : callable
+        Long name of a variable; see `fpsolve.evolution.series.long_name`.
+    """
+
+    over: str = "s_step"
+    words: Callable[[str], str] = long_name
+
+    @property
+    def needed(self) -> tuple[str, ...]:
+        """The arclengths."""
+        return ("s_step",)
+
+    def coordinates(self, result: Any) -> Variables:
+        """The arclengths."""
+        s = result.series["s"]
+        return {"s_step": (self.over, s, labels(COORDINATES["s_step"]))}
+
+    def variables(self, result: Any) -> Variables:
+        """A variable for every series, and one that ends in `_error` for an error."""
+        series = {name: (self.over, values) for name, values in result.series.items()
+                  if name != "s"}  # fmt: skip
+        errors = {
+            f"{name}_error": (self.over if name in result.series else "s", values)
+            for name, values in (result.errors or {}).items()
+        }
+        return {
+            name: (over, values, labels(self.words(name)))
+            for name, (over, values) in (series | errors).items()
+        }
+
+    def read(self, source: Source) -> dict[str, Any]:
+        """Every series, s first, and every error."""
+        dataset = source.dataset
+        check_dimensions(dataset, "s_step", (self.over,))
+        check_increasing("s_step", dataset)
+        series = {"s": dataset["s_step"].values}
+        errors: dict[str, Any] = {}
+        for key, variable in dataset.data_vars.items():
+            name, dims = str(key), tuple(map(str, variable.dims))
+            of_an_error = name.endswith("_error")
+            if of_an_error and dims not in {("s",), (self.over,)}:
+                raise ValueError(
+                    f"`{name}` must be a series over s or {self.over}, got one over "
+                    f"{', '.join(dims) or 'nothing'}"
+                )
+            if of_an_error or dims == (self.over,):
+                check_dimensions(dataset, name, dims)
+                into = errors if of_an_error else series
+                into[name.removesuffix("_error")] = variable.values
+        return {"series": series, "errors": errors or None}
+
+
+def check_increasing(name: str, dataset: xr.Dataset) -> None:
+    """Raise ValueError unless the arclengths are finite and increase."""
+    values = dataset[name].values
+    if not (np.isfinite(values).all() and (np.diff(values) > 0).all()):
+        raise ValueError(f"`{name}` must be finite and increase, got other numbers")

@@ -1,0 +1,247 @@
+"""How paths are stored: positions, moments, histograms, and what determines them.
+
+Of paths that were not kept there are moments and histograms only. What begins with
+`start_`, `end_` and `initial_` is needed to repeat the paths and to go on with them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fpsolve._support.labels import check_complete, labels, to_json
+from fpsolve.evolution.layout import (
+    Attribute,
+    Layout,
+    Part,
+    Source,
+    Told,
+    Variable,
+    Variables,
+    check_counts,
+    check_dimensions,
+)
+from fpsolve.evolution.parts import STATUS, Arclengths, Model, checked_step
+from fpsolve.evolution.schedule import Schedule
+from fpsolve.evolution.series import SERIES
+from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.paths.ensemble import Ensemble
+from fpsolve.paths.law_dataset import Law
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["PATHS"]
+
+Array = NDArray[np.float64]
+
+_AXES = ("xi1", "xi2", "alpha")
+_CELLS = tuple(f"cell_{axis}" for axis in _AXES)
+# The parts of a state: name, its place in the array of states, long name.
+STATE = (
+    ("xi", slice(0, 2), "deviation ξ"),
+    ("tau", slice(2, 4), "tangent τ = (cos α, sin α)"),
+    ("turns", 4, "full turns of the angle α"),
+)
+# States of a result: field, what begins the names of variables, dimensions, when.
+STATES: Any = (
+    ("states", "", ("s",), ""),
+    ("start", "start_", (), " at the start"),
+    ("end", "end_", (), " at the end"),
+)
+
+
+class Determined(Part):
+    """What determines the paths; a model and a law of the start have their own parts.
+
+    Numbers of paths and steps must be those of the arrays.
+    """
+
+    needed_attributes = ("n_paths", "seed", "method", "ds", "s_start", "n_steps",
+                         "saved_steps", "kept")  # fmt: skip
+
+    def attributes(self, result: Any) -> dict[str, Any]:
+        """Numbers, steps, seed and method, and the grid of histograms."""
+        ensemble = result.ensemble
+        schedule, grid = ensemble.schedule, ensemble.grid
+        return {
+            "n_paths": ensemble.n_paths,
+            # As text, because a seed may be longer than any integer of a file.
+            "seed": str(ensemble.seed),
+            "method": ensemble.method,
+            "ds": schedule.ds,
+            "s_start": schedule.start,
+            "n_steps": schedule.n_steps,
+            "saved_steps": to_json(schedule.saves),
+            "kept": int(ensemble.keep),
+            **({} if grid is None else {"grid": to_json(grid.to_dict())}),
+        }
+
+    def read(self, source: Source) -> dict[str, Any]:
+        """The ensemble."""
+        about = source.about
+        check_steps(source.dataset, about)
+        schedule = Schedule(
+            start=float(about["s_start"]),
+            ds=checked_step(about["ds"]),
+            n_steps=about["n_steps"],
+            records=(),
+            saves=tuple(about["saved_steps"]),
+        )
+        grid = PhaseSpaceGrid.from_dict(about["grid"]) if "grid" in about else None
+        ensemble = Ensemble(
+            model=source.fields.pop("model"),
+            n_paths=about["n_paths"],
+            schedule=schedule,
+            seed=int(about["seed"]),
+            method=about["method"],
+            law=source.fields.pop("initial"),
+            keep=bool(about["kept"]),
+            grid=grid,
+        )
+        return {"ensemble": ensemble}
+
+
+def check_steps(dataset: xr.Dataset, about: Mapping[str, Any]) -> None:
+    """Raise ValueError unless as many steps are saved, and not beyond the last."""
+    n_saved, places = dataset.sizes["s"], about["saved_steps"]
+    if len(places) != n_saved:
+        raise ValueError(
+            f"`saved_steps` must be {n_saved} steps as in `s`, got {len(places)}"
+        )
+    if any(step > about["n_steps"] for step in places):
+        raise ValueError(
+            f"`n_steps` must be the last step, got {about['n_steps']} before "
+            f"{max(places)}"
+        )
+
+
+class Positions(Part):
+    """All states, and the angles, which readers of the file need the most."""
+
+    def variables(self, result: Any) -> Variables:
+        """None of paths that were not kept."""
+        if not result.kept:
+            return {}
+        words = "angle α in radians, continuous along a path"
+        here, start, end = (
+            _variables(getattr(result, name), *how) for name, *how in STATES
+        )
+        angles = {"alpha": (("s", "path"), result.alpha, labels(words))}
+        return {**here, **angles, **start, **end}
+
+    def coordinates(self, result: Any) -> Variables:
+        """Numbers of paths and components."""
+        if not result.kept:
+            return {}
+        words = "component, 1 along the belt and 2 across"
+        numbers = np.arange(result.n_paths)
+        return {
+            "path": ("path", numbers, labels("number of the path")),
+            "component": ("component", np.array([1, 2]), labels(words)),
+        }
+
+    def read(self, source: Source) -> dict[str, Any]:
+        """The states, of as many paths as there are."""
+        dataset, ensemble = source.dataset, source.fields["ensemble"]
+        if not ensemble.keep:
+            n_saved = dataset.sizes["s"]
+            nothing = np.empty((5, 0))
+            return {"states": np.empty((n_saved, 5, 0)), "start": nothing,
+                    "end": nothing}  # fmt: skip
+        names = [prefix + name for _, prefix, *_ in STATES for name, *_ in STATE]
+        check_complete(dataset, names, ())
+        check_dimensions(dataset, "xi", ("s", "path", "component"))
+        check_counts("n_paths", ensemble.n_paths, dataset.sizes["path"], "`xi`")
+        return {name: _states(dataset, prefix) for name, prefix, *_ in STATES}
+
+
+def _variables(
+    states: Array, prefix: str, dimensions: tuple[str, ...], when: str
+) -> Variables:
+    variables: Variables = {}
+    for name, place, words in STATE:
+        values, over = states[..., place, :], (*dimensions, "path")
+        if isinstance(place, slice):
+            values, over = np.swapaxes(values, -1, -2), (*over, "component")
+        variables[prefix + name] = (over, values, labels(words + when))
+    return variables
+
+
+def _states(dataset: xr.Dataset, prefix: str) -> Array:
+    turns = dataset[f"{prefix}turns"].values
+    states = np.empty((*turns.shape[:-1], 5, turns.shape[-1]))
+    for name, place, _ in STATE:
+        values = dataset[prefix + name].values
+        vector = isinstance(place, slice)
+        states[..., place, :] = np.swapaxes(values, -1, -2) if vector else values
+    return states
+
+
+class Estimates(Part):
+    """Moments with their standard errors, for the readers of the dataset."""
+
+    def variables(self, result: Any) -> Variables:
+        """Two variables for every moment."""
+        moments, variables = result.moments(), {}
+        for name, values in moments.values.items():
+            words = SERIES[name].words if name in SERIES else "mean E ‖ξ‖²"
+            error = moments.standard_errors[name]
+            variables[name] = ("s", values, labels(words))
+            variables[f"{name}_standard_error"] = (
+                "s", error, labels(f"standard error of: {words}"),
+            )  # fmt: skip
+        return variables
+
+
+class Counts(Part):
+    """Histograms, if there are any."""
+
+    def variables(self, result: Any) -> Variables:
+        """Paths in the cells and outside of them."""
+        if result.ensemble.grid is None:
+            return {}
+        outside = "number of paths outside of the box of cells"
+        return {
+            "counts": (("s", *_CELLS), result.counts,
+                       labels("number of paths in a cell")),
+            "outside": ("s", result.outside, labels(outside)),
+        }  # fmt: skip
+
+    def coordinates(self, result: Any) -> Variables:
+        """Centres of the cells."""
+        grid = result.ensemble.grid
+        return {} if grid is None else {
+            cell: (cell, getattr(grid, axis), labels(f"centre of the cell in {axis}"))
+            for axis, cell in zip(_AXES, _CELLS, strict=True)
+        }  # fmt: skip
+
+    def read(self, source: Source) -> dict[str, Any]:
+        """The counts, of as many cells as the grid has."""
+        dataset, grid = source.dataset, source.fields["ensemble"].grid
+        if grid is None:
+            none = np.empty((0, 0, 0, 0), np.int64)
+            return {"counts": none, "outside": np.empty(0, np.int64)}
+        check_complete(dataset, ("counts", "outside"), ())
+        check_counts("grid", grid.shape, dataset["counts"].shape[1:], "`counts`")
+        return {name: dataset[name].values for name in ("counts", "outside")}
+
+
+PATHS = Layout(
+    "Paths of the stochastic fibre lay-down process",
+    Told("Conventions", lambda _: "CF-1.11"),
+    Model(equation="process_equation"),
+    Arclengths("s", ("s",), "arclength s of the saved points"),
+    Law(),
+    Determined(),
+    Positions(),
+    Variable("moment_sums", ("s", "sum"),
+             "sums over paths from which the moments come", "sums"),
+    Estimates(),
+    Counts(),
+    STATUS,
+    Attribute("message"),
+)  # fmt: skip

@@ -1,0 +1,60 @@
+"""How densities and paths of the hydrodynamic limit are stored."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fpsolve.evolution.layout import Attribute, Layout, Variable, Written
+from fpsolve.evolution.parts import (
+    SAVED,
+    STATUS,
+    STEP,
+    Arclengths,
+    Model,
+    OnGrid,
+    Recorded,
+)
+from fpsolve.evolution.series import long_name
+from fpsolve.grids.plane import PlaneGrid
+
+__all__ = ["PATHS", "SOLUTION"]
+
+# Where the limit's quantity differs from that of the full equation.
+WORDS = {
+    "mass": "mass ∫ 𝒫 dξ",
+    "relative_entropy": "relative entropy H(𝒫|𝒫_S)",
+    "entropy_dissipation": "entropy dissipation −dH/ds of the discrete equation",
+    "minimum": "smallest value of 𝒫",
+    "density_l1_error": "estimated error of: L¹ norm of 𝒫",
+}
+_PLANE, _COMPONENT, _PAIR = ("xi1", "xi2"), ("s", "component"), ("component", "other")
+
+SOLUTION = Layout(
+    "hydrodynamic limit of fibre lay-down",
+    Model("limit", owned=True),
+    SAVED,
+    OnGrid(PlaneGrid, _PLANE, "plane density 𝒫(s, ξ₁, ξ₂) of the hydrodynamic limit"),
+    Variable("initial_density", _PLANE, "plane density 𝒫₀ of the start", optional=True),
+    Recorded(words=lambda name: WORDS.get(name) or long_name(name)),
+    Attribute("method"),
+    STEP,
+    STATUS,
+)
+PATHS = Layout(
+    "Paths of the hydrodynamic limit of fibre lay-down",
+    Model(),
+    Arclengths("s", ("s",), "arclength s of the saved points"),
+    Variable("xi", ("s", "path", "component"), "deviation ξ"),
+    Written("mean", _COMPONENT, lambda one: one.mean()[0], "mean E ξ"),
+    Written("mean_standard_error", _COMPONENT, lambda one: one.mean()[1],
+            "its standard error"),
+    Written("covariance", ("s", *_PAIR), lambda one: one.covariance()[0],
+            "covariance of ξ"),
+    Written("covariance_standard_error", ("s", *_PAIR),
+            lambda one: one.covariance()[1], "standard error"),
+    *(Written(name, (name,), lambda _: np.array([1, 2]), "1 along the belt, 2 across",
+              coordinate=True) for name in _PAIR),
+    Attribute("method"),
+    # Zero where only the start is saved.
+    Attribute("ds", make=float),
+)  # fmt: skip

@@ -1,0 +1,38 @@
+"""A solution by implicit steps of dm/ds = Q m."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fpsolve.evolution.decay import DecayRate, fit_decay
+from fpsolve.evolution.evolution import Evolution
+
+__all__ = ["Relaxed"]
+
+Array = NDArray[np.float64]
+
+
+class Relaxed(Evolution):
+    """An evolution of cell masses by a method of `fpsolve.reduced.implicit`.
+
+    Attributes
+    ----------
+    method : str
+    """
+
+    method: str
+
+    def entropy_rate(self, window: tuple[float, float] | None = None) -> DecayRate:
+        """Rate λ of H ~ e^{−λs}, fitted on a window of s; tends to twice the gap.
+
+        Twice that of the grid: its error contains that of the step, from `errors` if
+        there are any, and nothing of the cells. An implicit step of length h takes a
+        mode e^{−λs/2} by a factor of which the rate is short by the share λh/4
+        (backward_euler) or (λh)²/40 (sdirk2).
+        """
+        return super().entropy_rate(window)
+
+    def _of_step(self, above: Array, window: tuple[float, float] | None) -> float:
+        turn = fit_decay(self.series["s"], above, window).rate * self.ds
+        return turn / 4 if self.method == "backward_euler" else turn**2 / 40

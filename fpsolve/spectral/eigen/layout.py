@@ -1,0 +1,152 @@
+"""How a spectrum is stored: over `index`, slowest first."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from fpsolve._support.labels import labels, to_json
+from fpsolve.evolution.layout import (
+    Attribute,
+    Layout,
+    Part,
+    Source,
+    Told,
+    Variable,
+    Variables,
+    Written,
+    check_counts,
+)
+from fpsolve.evolution.parts import Model
+from fpsolve.spectral.bases.choice import discretisation_for
+from fpsolve.spectral.bases.sectors import Sector, Truncation
+from fpsolve.spectral.eigen.survey import Mode
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["SPECTRUM"]
+
+_INDEX = ("index",)
+
+
+class Eigenvalues(Part):
+    """Eigenvalues, in two parts."""
+
+    needed = ("real", "imag")
+
+    def variables(self, result: Any) -> Variables:
+        """Re λ and Im λ."""
+        values = result.eigenvalues
+        return {
+            "real": (_INDEX, values.real, labels("Re λ")),
+            "imag": (_INDEX, values.imag, labels("Im λ")),
+        }
+
+    def coordinates(self, result: Any) -> Variables:
+        """Numbers of the eigenvalues."""
+        return {"index": np.arange(len(result.eigenvalues))}
+
+    def read(self, source: Source) -> dict[str, Any]:
+        """The eigenvalues."""
+        return {"eigenvalues": joined(source.dataset)}
+
+
+class Sectors(Part):
+    """Where each eigenvalue belongs, in words and as JSON."""
+
+    needed = ("sector",)
+    needed_attributes = ("sectors",)
+
+    def variables(self, result: Any) -> Variables:
+        """The words."""
+        words = np.array([str(one) for one in result.sectors], dtype=object)
+        return {"sector": (_INDEX, words)}
+
+    def attributes(self, result: Any) -> dict[str, Any]:
+        """The sectors."""
+        return {"sectors": to_json([one.to_dict() for one in result.sectors])}
+
+    def read(self, source: Source) -> dict[str, Any]:
+        """As many sectors as there are eigenvalues."""
+        sectors = [Sector(**one) for one in source.about["sectors"]]
+        n = source.dataset.sizes["index"]
+        check_counts("sectors", len(sectors), n, "`index`")
+        return {"sectors": sectors}
+
+
+class Modes(Part):
+    """Coefficients of all eigenfunctions, one behind the other.
+
+    Without a model there is no basis, and no eigenfunction.
+    """
+
+    needed = ("mode_degree", "mode_harmonics", "mode_size", "mode_real", "mode_imag")
+
+    def variables(self, result: Any) -> Variables:
+        """Truncations, numbers of coefficients, and these."""
+        modes = result._modes
+        vectors = np.concatenate(
+            [np.zeros(0, complex), *(mode.vector for mode in modes)]
+        )
+        sizes = np.array([mode.truncation for mode in modes], np.int64).reshape(-1, 2)
+        lengths = np.array([mode.vector.size for mode in modes], np.int64)
+        of, coefficient = "coefficients of the eigenfunction", ("coefficient",)
+        return {
+            "mode_degree": (_INDEX, sizes[:, 0], labels("degree of its basis")),
+            "mode_harmonics": (_INDEX, sizes[:, 1],
+                               labels("largest harmonic of its basis")),
+            "mode_size": (_INDEX, lengths, labels(of)),
+            "mode_real": (coefficient, vectors.real, labels("Re of coefficients")),
+            "mode_imag": (coefficient, vectors.imag, labels("Im of coefficients")),
+        }  # fmt: skip
+
+    def read(self, source: Source) -> dict[str, Any]:
+        """The modes, and the basis that they are in."""
+        model, sectors = source.fields["model"], source.fields["sectors"]
+        if model is None:
+            return {"_modes": [], "_discretisation": None}
+        modes = list(modes_of(source.dataset, source.fields["eigenvalues"], sectors))
+        return {"_modes": modes, "_discretisation": discretisation_for(model)}
+
+
+def joined(dataset: xr.Dataset, prefix: str = "") -> Any:
+    """Complex numbers from two variables."""
+    real, imag = (dataset[prefix + part].to_numpy() for part in ("real", "imag"))
+    # Not by a sum, which would lose the sign of a zero.
+    values = np.empty(np.shape(real), complex)
+    values.real, values.imag = real, imag
+    return values
+
+
+def modes_of(
+    dataset: xr.Dataset, eigenvalues: Any, sectors: Sequence[Sector]
+) -> Iterator[Mode]:
+    """Every mode with its own coefficients."""
+    vectors = joined(dataset, "mode_")
+    degrees, harmonics, sizes = (dataset[name].to_numpy() for name in Modes.needed[:3])
+    check_counts("mode_size", int(sizes.sum()), vectors.size, "`mode_real`")
+    parts = np.split(vectors, np.cumsum(sizes)[:-1])
+    for place, sector in enumerate(sectors):
+        truncation = Truncation(int(degrees[place]), int(harmonics[place]))
+        yield Mode(complex(eigenvalues[place]), parts[place], sector, truncation)
+
+
+SPECTRUM = Layout(
+    "Eigenvalues of the generator",
+    Model(),
+    Eigenvalues(),
+    Variable("error", _INDEX, "error of λ", "errors"),
+    Variable("residual", _INDEX, "‖Lf − λf‖/‖f‖", "residuals"),
+    Written("multiplicity", _INDEX, lambda found: found.multiplicities,
+            "sectors with this eigenvalue"),
+    Sectors(),
+    Modes(),
+    Told("gap", lambda found: found.gap),
+    Told("gap_error", lambda found: found.gap_error),
+    Attribute("truncation", write=lambda sizes: to_json([int(one) for one in sizes]),
+              make=lambda sizes: Truncation(*sizes)),
+    Attribute("essential", optional=True),
+)  # fmt: skip

@@ -1,0 +1,128 @@
+"""How a cross-check is stored: numbers of the tests, and marginals of both sides."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from fpsolve._support.labels import labels, to_json
+from fpsolve.evolution.layout import (
+    Attribute,
+    Columns,
+    Layout,
+    Part,
+    Source,
+    Told,
+    Variables,
+    check_counts,
+)
+from fpsolve.evolution.parts import Model
+from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.studies.agreement.outcome import MARGINALS, AgreementTest
+
+__all__ = ["CHECK"]
+
+NUMBERS = {
+    "statistic": "χ², largest |z|, or z",
+    "critical": "|statistic| from which on the test disagrees",
+    "p_value": "p-value",
+    "threshold": "p-value below which the test disagrees",
+    "detectable": "disagreement seen with probability 0.99",
+    "difference": "disagreement found",
+    "step_error": "estimated step error of density and paths",
+    "grid_error": "estimated error of the density's grid, for which the test allows",
+    "density": "value by the density",
+    "paths": "value by the paths",
+    "standard_error": "standard error of the value by the paths",
+}
+# Stands for the degrees of freedom of a test that has none.
+NO_DEGREES = -1
+_TESTS = ("s", "test")
+
+
+class Tests(Part):
+    """Every number of every test, over arclengths, then names."""
+
+    needed = (*NUMBERS, "degrees", "s", "test")
+
+    def variables(self, result: Any) -> Variables:
+        """A variable for every number."""
+        degrees = [
+            NO_DEGREES if one.degrees is None else one.degrees for one in result.tests
+        ]
+        agrees = [one.agrees for one in result.tests]
+        tables = {
+            **{name: ([getattr(one, name) for one in result.tests], np.float64, words)
+               for name, words in NUMBERS.items()},
+            "agrees": (agrees, np.int8, "1 if the test agrees"),
+            "degrees": (degrees, np.int64,
+                        "degrees of freedom, -1 if the test has none"),
+        }  # fmt: skip
+        return {
+            name: (_TESTS, np.array(values, dtype=kind).reshape(len(result.s), -1),
+                   labels(words))
+            for name, (values, kind, words) in tables.items()
+        }  # fmt: skip
+
+    def coordinates(self, result: Any) -> Variables:
+        """Arclengths, and names of the tests."""
+        names = np.array(list(result.detectable), dtype=object)
+        return {"s": ("s", result.s, labels("arclength s")), "test": ("test", names)}
+
+    def read(self, source: Source) -> dict[str, Any]:
+        """The arclengths and the tests."""
+        values = {name: source.dataset[name].to_numpy() for name in self.needed}
+        return {"s": values["s"], "tests": tuple(tests_of(values))}
+
+
+def tests_of(values: dict[str, Any]) -> Iterator[AgreementTest]:
+    """Every test, in the order of arclengths, then names."""
+    for row, s in enumerate(values["s"]):
+        for column, name in enumerate(values["test"]):
+            free = int(values["degrees"][row, column])
+            yield AgreementTest(
+                float(s), str(name),
+                degrees=None if free == NO_DEGREES else free,
+                **{number: float(values[number][row, column]) for number in NUMBERS},
+            )  # fmt: skip
+
+
+class Cells(Part):
+    """The grid, whose axes are those of the marginals."""
+
+    needed_attributes = ("grid",)
+
+    def coordinates(self, result: Any) -> Variables:
+        """Centres of the cells."""
+        return {axis: (axis, getattr(result.grid, axis)) for axis in MARGINALS}
+
+    def attributes(self, result: Any) -> dict[str, Any]:
+        """The grid as JSON."""
+        return {"grid": to_json(result.grid.to_dict())}
+
+    def read(self, source: Source) -> dict[str, Any]:
+        """The grid, of as many cells as the marginals."""
+        grid = PhaseSpaceGrid.from_dict(source.about["grid"])
+        for axis, n in zip(MARGINALS, grid.shape, strict=True):
+            check_counts("grid", n, source.dataset.sizes[axis], f"`{axis}`")
+        return {"grid": grid}
+
+
+CHECK = Layout(
+    "Density against paths",
+    Told("verdict", str),
+    Told("agrees", lambda check: int(check.agrees)),
+    Attribute("false_alarm", make=float),
+    Attribute("n_paths"),
+    Model(),
+    Cells(),
+    Attribute("solver", write=to_json),
+    Attribute("sampler", write=to_json),
+    Tests(),
+    Columns("probabilities", MARGINALS, ("s", "{}"),
+            "probability of a cell of {} by the density".format, "probability_{}"),
+    Columns("counts", MARGINALS, ("s", "{}"),
+            "paths inside the box in a cell of {}".format, "count_{}"),
+)  # fmt: skip
