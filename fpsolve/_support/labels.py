@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -75,12 +75,10 @@ def read_provenance(about: Mapping[str, Any]) -> dict[str, Any]:
     return {**about["provenance"], **command}
 
 
-def check_complete(
-    dataset: xr.Dataset, variables: Iterable[str], attributes: Iterable[str]
-) -> None:
+def check_complete(dataset: xr.Dataset, *names: str) -> None:
     """Raise ValueError if a variable or an attribute is missing."""
-    missing = [f"`{name}`" for name in variables if name not in dataset]
-    missing += [f"`{name}`" for name in attributes if name not in dataset.attrs]
+    there = {*dataset.variables, *dataset.attrs}
+    missing = [f"`{name}`" for name in names if name not in there]
     if missing:
         raise ValueError(f"{', '.join(missing)} is missing in it")
 

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fpsolve.density.solution import Solution
-from fpsolve.evolution.richardson import error_of_series, gain_of
+from fpsolve.evolution.richardson import extrapolated_series, gain_of
 from fpsolve.evolution.series import is_extrapolated
 from fpsolve.evolution.stored import CombinedDensities, LazyDensities
 from fpsolve.grids import diagnostics
@@ -50,13 +50,10 @@ def extrapolated(coarse: Solution, fine: Solution, order: int) -> Solution:
     """
     gain = gain_of(order)
     allowed = gain if _resolved(coarse) else 1.0
-    series, errors = dict(fine.series), {}
     reach = _WINDOW * min(fine.grid.half_widths)
-    for name, values in fine.series.items():
-        change = values - coarse.series[name]
-        errors[name] = error_of_series(fine.s, change, reach, allowed)
-        if is_extrapolated(name):
-            series[name] = values + gain * change
+    series, errors = extrapolated_series(
+        fine.series, coarse.series, gain, reach, allowed, is_extrapolated
+    )
     distances = [
         allowed * diagnostics.l1_distance(p, q, fine.grid)
         for p, q in zip(fine.densities, coarse.densities, strict=True)

@@ -17,9 +17,8 @@ from fpsolve.evolution.layout import (
     Layout,
     Part,
     Source,
-    Told,
+    Stored,
     Variable,
-    Variables,
     check_dimensions,
 )
 from fpsolve.evolution.parts import SAVED, STATUS, STEP, Model, OnGrid, Recorded
@@ -31,15 +30,14 @@ __all__ = ["SOLUTION", "is_saved"]
 _AXES = ("xi1", "xi2", "alpha")
 
 
-class Start(Part):
+class _Start(Part):
     """What the run began with, unless it is the first of the saved densities.
 
     With it, and the density that the entropy is relative to if one was given, the run
-    can be repeated.
+    can be repeated. Over the plane only if they do not depend on the angle.
     """
 
-    def variables(self, result: Any) -> Variables:
-        """Up to two densities, over the plane if they do not depend on the angle."""
+    def write(self, result: Any) -> Stored:
         p0 = None if is_saved(result) else result.initial_density
         given = {"initial_density": p0, "reference_density": result.reference}
         found = {name: np.asarray(p) for name, p in given.items() if p is not None}
@@ -48,7 +46,6 @@ class Start(Part):
         }
 
     def read(self, source: Source) -> dict[str, Any]:
-        """Both, or None."""
         dataset, found = source.dataset, dict.fromkeys(START)
         for name in START:
             if name in dataset:
@@ -89,15 +86,15 @@ def checked_description(scheme: dict[str, Any]) -> dict[str, Any]:
 
 SOLUTION = Layout(
     "Solution of the fibre lay-down Fokker-Planck equation",
-    Told("Conventions", lambda _: "CF-1.11"),
+    Attribute("Conventions", values=lambda _: "CF-1.11"),
     Model(),
     SAVED,
     OnGrid(PhaseSpaceGrid, _AXES, DENSITY),
     Variable("entropy_floor", (), "value that H(p|p_S) tends to on this grid",
              kind=float),
-    Start(),
+    _Start(),
     Recorded("step"),
-    Attribute("scheme", write=to_json, make=checked_description),
+    Attribute("scheme", write_as=to_json, read_as=checked_description),
     STEP,
     STATUS,
     Attribute("message"),

@@ -17,8 +17,8 @@ __all__ = ["Evolution", "WithSeries"]
 Array = NDArray[np.float64]
 
 
-class WithSeries(Saved):
-    """A result whose series are attributes.
+class WithSeries:
+    """Series over s, which are attributes.
 
     Attributes
     ----------
@@ -43,7 +43,7 @@ class WithSeries(Saved):
         return [*super().__dir__(), *self.series]
 
 
-class Evolution(WithSeries):
+class Evolution(WithSeries, Saved):
     """Densities that were saved, and series over every recorded step.
 
     The axes of a density are those of the grid. A class of one equation adds what it

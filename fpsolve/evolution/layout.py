@@ -31,18 +31,20 @@ __all__ = [
     "Attribute",
     "Columns",
     "Layout",
-    "Named",
     "Part",
     "Source",
-    "Told",
     "Variable",
-    "Written",
     "check_counts",
     "check_dimensions",
 ]
 
-Variables = dict[str, Any]
+# Name to a variable as xarray takes it, a tuple, or to an attribute, which is none.
+Stored = dict[str, Any]
 Take = Callable[[Any], Any]
+
+
+def _as_it_is(value: Any) -> Any:
+    return value
 
 
 @dataclass(frozen=True)
@@ -70,32 +72,19 @@ class Source:
 
 
 class Part:
-    """Some fields of a result in its dataset; what a part has not is empty."""
+    """Some fields of a result in its dataset."""
 
     @property
     def needed(self) -> tuple[str, ...]:
-        """Variables without which it cannot be read."""
+        """Variables and attributes without which it cannot be read."""
         return ()
 
-    @property
-    def needed_attributes(self) -> tuple[str, ...]:
-        """Attributes without which it cannot be read."""
-        return ()
-
-    def variables(self, result: Any) -> Variables:
-        """Variables of the dataset, as xarray takes them."""
-        return {}
-
-    def coordinates(self, result: Any) -> Variables:
-        """Coordinates of the dataset, as xarray takes them."""
-        return {}
-
-    def attributes(self, result: Any) -> dict[str, Any]:
-        """Attributes of the dataset."""
-        return {}
+    def write(self, result: Any) -> Stored:
+        """Variables and attributes by name."""
+        raise NotImplementedError
 
     def read(self, source: Source) -> dict[str, Any]:
-        """The fields; ValueError if what is stored does not fit."""
+        """The fields by name; ValueError if what is stored does not fit."""
         return {}
 
 
@@ -119,15 +108,15 @@ class Layout:
         """The result as a labelled Dataset."""
         import xarray as xr
 
-        variables: Variables = {}
-        coordinates: Variables = {}
-        attributes: dict[str, Any] = {"title": self.title}
+        variables: Stored = {}
+        attributes: Stored = {"title": self.title}
         for part in self.parts:
-            variables |= part.variables(result)
-            coordinates |= part.coordinates(result)
-            attributes |= part.attributes(result)
+            for name, value in part.write(result).items():
+                (variables if isinstance(value, tuple) else attributes)[name] = value
         attributes |= origin(result.provenance)
-        dataset = xr.Dataset(variables, coordinates, attributes)
+        dataset = xr.Dataset(variables, attrs=attributes)
+        # What is named like its dimension is a coordinate by itself.
+        dataset = dataset.set_coords([one for one in ("s_step",) if one in dataset])
         dataset = dataset if result.call is None else result.call.on(dataset)
         return marked(dataset, result.kind)
 
@@ -142,8 +131,7 @@ class Layout:
             If a part is missing, or does not fit.
         """
         needed = [name for part in self.parts for name in part.needed]
-        told = [name for part in self.parts for name in part.needed_attributes]
-        check_complete(dataset, needed, [*told, "provenance"])
+        check_complete(dataset, *needed, "provenance")
         about = declared(dataset.attrs)
         source = Source(dataset, about, read_provenance(about), owners)
         for part in self.parts:
@@ -154,7 +142,7 @@ class Layout:
 
 @dataclass(frozen=True)
 class Variable(Part):
-    """A field of numbers.
+    """A field of numbers, or numbers for the readers of the dataset alone.
 
     Attributes
     ----------
@@ -162,127 +150,94 @@ class Variable(Part):
         In the dataset.
     dims : tuple of str
     words : str
-        Its long name.
+        Its long name; none for texts.
     field : str
         In the result, if it is another name.
     kind : callable
         Of what is read: `float`, `int`; an array by default.
     optional : bool
         Whether the field may be None, and is left out then.
+    increasing : bool
+        Whether the numbers must be arclengths, which increase.
+    values : callable
+        Of the result, in place of a field; nothing is read then.
     """
 
     name: str
     dims: tuple[str, ...]
-    words: str
+    words: str = ""
     field: str = ""
     kind: Take = np.asarray
     optional: bool = False
+    increasing: bool = False
+    values: Take | None = None
 
     @property
     def needed(self) -> tuple[str, ...]:
         """Its name, unless it may be left out."""
-        return () if self.optional else (self.name,)
+        return () if self.optional or self.values else (self.name,)
 
-    def variables(self, result: Any) -> Variables:
+    def write(self, result: Any) -> Stored:
         """One, or none."""
-        values = getattr(result, self.field or self.name)
-        if values is None and self.optional:
-            return {}
-        return {self.name: (self.dims, values, labels(self.words))}
+        take = self.values or (lambda result: getattr(result, self.field or self.name))
+        values = take(result)
+        about = labels(self.words) if self.words else {}
+        left_out = values is None and self.optional
+        return {} if left_out else {self.name: (self.dims, values, about)}
 
     def read(self, source: Source) -> dict[str, Any]:
         """The numbers, over the dimensions that they had."""
         name = self.field or self.name
+        if self.values:
+            return {}
         if self.name not in source.dataset:
             return {name: None}
         check_dimensions(source.dataset, self.name, self.dims)
-        return {name: self.kind(source.dataset[self.name].values)}
-
-
-@dataclass(frozen=True)
-class Written(Part):
-    """A variable for the readers of the dataset, from which no field is made.
-
-    Attributes
-    ----------
-    name : str
-    dims : tuple of str
-    values : callable
-        Of the result.
-    words : str
-        Its long name; none for texts.
-    coordinate : bool
-    """
-
-    name: str
-    dims: tuple[str, ...]
-    values: Take
-    words: str = ""
-    coordinate: bool = False
-
-    def variables(self, result: Any) -> Variables:
-        """One, unless it is a coordinate."""
-        return {} if self.coordinate else self._labelled(result)
-
-    def coordinates(self, result: Any) -> Variables:
-        """One, if it is a coordinate."""
-        return self._labelled(result) if self.coordinate else {}
-
-    def _labelled(self, result: Any) -> Variables:
-        about = labels(self.words) if self.words else {}
-        return {self.name: (self.dims, self.values(result), about)}
+        values = source.dataset[self.name].values
+        if self.increasing:
+            check_increasing(self.name, values)
+        return {name: self.kind(values)}
 
 
 @dataclass(frozen=True)
 class Attribute(Part):
-    """A field as an attribute.
+    """A field as an attribute, or an attribute for the readers of the dataset alone.
 
     Attributes
     ----------
-    name : str
-        In the dataset.
-    field : str
-        In the result, if it is another name.
-    write, make : callable
+    name, field, optional, values
+        As for `Variable`.
+    write_as, read_as : callable
         Of the field, and of the attribute as `declared` gives it.
-    optional : bool
-        Whether the field may be None, and is left out then.
     """
 
     name: str
     field: str = ""
-    write: Take = lambda value: value
-    make: Take = lambda value: value
+    write_as: Take = _as_it_is
+    read_as: Take = _as_it_is
     optional: bool = False
+    values: Take | None = None
 
     @property
-    def needed_attributes(self) -> tuple[str, ...]:
+    def needed(self) -> tuple[str, ...]:
         """Its name, unless it may be left out."""
-        return () if self.optional else (self.name,)
+        return () if self.optional or self.values else (self.name,)
 
-    def attributes(self, result: Any) -> dict[str, Any]:
+    def write(self, result: Any) -> Stored:
         """One, or none."""
+        if self.values:
+            return {self.name: self.values(result)}
         value = getattr(result, self.field or self.name)
         left_out = value is None and self.optional
-        return {} if left_out else {self.name: self.write(value)}
+        return {} if left_out else {self.name: self.write_as(value)}
 
     def read(self, source: Source) -> dict[str, Any]:
         """What is made of it."""
+        if self.values:
+            return {}
         value = source.about.get(self.name)
         left_out = value is None and self.optional
-        return {self.field or self.name: None if left_out else self.make(value)}
-
-
-@dataclass(frozen=True)
-class Told(Part):
-    """An attribute for the readers of the dataset, from which no field is made."""
-
-    name: str
-    value: Take
-
-    def attributes(self, result: Any) -> dict[str, Any]:
-        """One."""
-        return {self.name: self.value(result)}
+        return {self.field or self.name: None if left_out else self.read_as(value)}
 
 
 @dataclass(frozen=True)
@@ -316,7 +271,7 @@ class Columns(Part):
         """A variable for every name."""
         return tuple(map(self.pattern.format, self.names))
 
-    def variables(self, result: Any) -> Variables:
+    def write(self, result: Any) -> Stored:
         """As many as there are names."""
         return {
             self.pattern.format(name): (self._over(name), values,
@@ -336,38 +291,6 @@ class Columns(Part):
         return tuple(one.format(name) for one in self.dims)
 
 
-@dataclass(frozen=True)
-class Named(Part):
-    """A mapping of floats: one variable over their names."""
-
-    name: str
-    over: str
-    words: str
-    field: str
-
-    @property
-    def needed(self) -> tuple[str, ...]:
-        """The numbers and their names."""
-        return self.name, self.over
-
-    def variables(self, result: Any) -> Variables:
-        """The numbers."""
-        values = np.array([*getattr(result, self.field).values()], dtype=np.float64)
-        return {self.name: (self.over, values, labels(self.words))}
-
-    def coordinates(self, result: Any) -> Variables:
-        """The names."""
-        names = np.array([*getattr(result, self.field)], dtype=object)
-        return {self.over: (self.over, names)}
-
-    def read(self, source: Source) -> dict[str, Any]:
-        """The mapping."""
-        check_dimensions(source.dataset, self.name, (self.over,))
-        names, values = (source.dataset[one].values for one in (self.over, self.name))
-        pairs = zip(names, values, strict=True)
-        return {self.field: {str(name): float(value) for name, value in pairs}}
-
-
 def check_dimensions(dataset: xr.Dataset, name: str, dims: tuple[str, ...]) -> None:
     """Raise ValueError unless a variable holds numbers over these dimensions."""
     found = dataset[name]
@@ -376,6 +299,12 @@ def check_dimensions(dataset: xr.Dataset, name: str, dims: tuple[str, ...]) -> N
             f"`{name}` must hold numbers over {', '.join(dims) or 'nothing'}, got "
             f"{found.dtype} over {', '.join(map(str, found.dims)) or 'nothing'}"
         )
+
+
+def check_increasing(name: str, values: Any) -> None:
+    """Raise ValueError unless the arclengths are finite and increase."""
+    if not (np.isfinite(values).all() and (np.diff(values) > 0).all()):
+        raise ValueError(f"`{name}` must be finite and increase, got other numbers")
 
 
 def check_counts(name: str, expected: Any, got: Any, of: str) -> None:

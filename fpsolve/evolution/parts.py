@@ -14,9 +14,10 @@ from fpsolve.evolution.layout import (
     Attribute,
     Part,
     Source,
+    Stored,
     Variable,
-    Variables,
     check_dimensions,
+    check_increasing,
 )
 from fpsolve.evolution.series import COORDINATES, long_name
 from fpsolve.model.stored import describe_model, read_model
@@ -24,7 +25,7 @@ from fpsolve.model.stored import describe_model, read_model
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["STATUS", "STEP", "Arclengths", "Model", "OnGrid", "Recorded"]
+__all__ = ["SAVED", "STATUS", "STEP", "Model", "OnGrid", "Recorded", "checked_step"]
 
 _STATUS = ("finished", "interrupted", "failed")
 # Cell centres are stored as they were computed; a later version may round otherwise.
@@ -47,8 +48,9 @@ def checked_status(status: str) -> str:
     return status
 
 
-STEP = Attribute("ds", make=checked_step)
-STATUS = Attribute("status", make=checked_status)
+SAVED = Variable("s", ("s",), COORDINATES["s"], "saved_s", increasing=True)
+STEP = Attribute("ds", read_as=checked_step)
+STATUS = Attribute("status", read_as=checked_status)
 
 
 @dataclass(frozen=True)
@@ -71,18 +73,15 @@ class Model(Part):
     equation: str = "equation"
     owned: bool = False
 
-    @property
-    def needed_attributes(self) -> tuple[str, ...]:
-        """The description."""
-        return ("model",)
+    needed = ("model",)
 
-    def attributes(self, result: Any) -> dict[str, Any]:
+    def write(self, result: Any) -> Stored:
         """What is solved, and the model."""
         model = getattr(result, self.field)
         if self.owned and model is not None:
             model = model.model
         equation = None if model is None else getattr(model, self.equation)
-        return describe_model(model, equation, result.provenance)
+        return {**describe_model(model, equation, result.provenance)}
 
     def read(self, source: Source) -> dict[str, Any]:
         """The model; None if it cannot be made again."""
@@ -92,28 +91,6 @@ class Model(Part):
         if self.owned and model is not None:
             return {self.field: source.owners[self.field](model)}
         return {self.field: model}
-
-
-@dataclass(frozen=True)
-class Arclengths(Variable):
-    """A coordinate of arclengths, which increase."""
-
-    def variables(self, result: Any) -> Variables:
-        """None: it is a coordinate."""
-        return {}
-
-    def coordinates(self, result: Any) -> Variables:
-        """The arclengths."""
-        return super().variables(result)
-
-    def read(self, source: Source) -> dict[str, Any]:
-        """The arclengths."""
-        found = super().read(source)
-        check_increasing(self.name, source.dataset)
-        return found
-
-
-SAVED = Arclengths("s", ("s",), COORDINATES["s"], "saved_s")
 
 
 @dataclass(frozen=True)
@@ -139,32 +116,20 @@ class OnGrid(Part):
     field: str = "densities"
     over: tuple[str, ...] = ("s",)
 
-    @property
-    def needed(self) -> tuple[str, ...]:
-        """The densities."""
-        return ("density",)
+    needed = ("density", "grid")
 
-    @property
-    def needed_attributes(self) -> tuple[str, ...]:
-        """The grid."""
-        return ("grid",)
-
-    def variables(self, result: Any) -> Variables:
-        """The densities, of which arrays share the memory."""
+    def write(self, result: Any) -> Stored:
+        """The grid, its centres, and the densities, which share their memory."""
         densities = np.asarray(getattr(result, self.field))
-        dims = (*self.over, *self.axes)
-        return {"density": (dims, densities, labels(self.words))}
-
-    def coordinates(self, result: Any) -> Variables:
-        """The centres of the cells along every axis."""
-        return {
+        centres = {
             name: (name, getattr(result.grid, name), labels(COORDINATES[name]))
             for name in self.axes
         }
-
-    def attributes(self, result: Any) -> dict[str, Any]:
-        """The grid as JSON."""
-        return {"grid": to_json(result.grid.to_dict())}
+        return {
+            "density": ((*self.over, *self.axes), densities, labels(self.words)),
+            **centres,
+            "grid": to_json(result.grid.to_dict()),
+        }
 
     def read(self, source: Source) -> dict[str, Any]:
         """The grid and the densities; both must fit, and the centres to the grid."""
@@ -204,36 +169,27 @@ class Recorded(Part):
     over: str = "s_step"
     words: Callable[[str], str] = long_name
 
-    @property
-    def needed(self) -> tuple[str, ...]:
-        """The arclengths."""
-        return ("s_step",)
+    needed = ("s_step",)
 
-    def coordinates(self, result: Any) -> Variables:
-        """The arclengths."""
-        s = result.series["s"]
-        return {"s_step": (self.over, s, labels(COORDINATES["s_step"]))}
-
-    def variables(self, result: Any) -> Variables:
+    def write(self, result: Any) -> Stored:
         """A variable for every series, and one that ends in `_error` for an error."""
-        series = {name: (self.over, values) for name, values in result.series.items()
-                  if name != "s"}  # fmt: skip
-        errors = {
-            f"{name}_error": (self.over if name in result.series else "s", values)
-            for name, values in (result.errors or {}).items()
-        }
-        return {
-            name: (over, values, labels(self.words(name)))
-            for name, (over, values) in (series | errors).items()
-        }
+        series, s = dict(result.series), labels(COORDINATES["s_step"])
+        stored: Stored = {"s_step": (self.over, series.pop("s"), s)}
+        columns = {name: (self.over, values) for name, values in series.items()}
+        for name, values in (result.errors or {}).items():
+            over = self.over if name in result.series else "s"
+            columns[f"{name}_error"] = (over, values)
+        for name, (over, values) in columns.items():
+            stored[name] = (over, values, labels(self.words(name)))
+        return stored
 
     def read(self, source: Source) -> dict[str, Any]:
         """Every series, s first, and every error."""
         dataset = source.dataset
         check_dimensions(dataset, "s_step", (self.over,))
-        check_increasing("s_step", dataset)
-        series = {"s": dataset["s_step"].values}
-        errors: dict[str, Any] = {}
+        s = dataset["s_step"].values
+        check_increasing("s_step", s)
+        series, errors = {"s": s}, {}
         for key, variable in dataset.data_vars.items():
             name, dims = str(key), tuple(map(str, variable.dims))
             of_an_error = name.endswith("_error")
@@ -244,13 +200,8 @@ class Recorded(Part):
                 )
             if of_an_error or dims == (self.over,):
                 check_dimensions(dataset, name, dims)
-                into = errors if of_an_error else series
-                into[name.removesuffix("_error")] = variable.values
+            if of_an_error:
+                errors[name.removesuffix("_error")] = variable.values
+            elif dims == (self.over,):
+                series[name] = variable.values
         return {"series": series, "errors": errors or None}
-
-
-def check_increasing(name: str, dataset: xr.Dataset) -> None:
-    """Raise ValueError unless the arclengths are finite and increase."""
-    values = dataset[name].values
-    if not (np.isfinite(values).all() and (np.diff(values) > 0).all()):
-        raise ValueError(f"`{name}` must be finite and increase, got other numbers")

@@ -58,6 +58,14 @@ class Ensemble:
     grid: PhaseSpaceGrid | None = None
     first_step: int = 0
 
+    def check_model(self) -> None:
+        """Raise ValueError unless the model is known, as the paths go on by it."""
+        if self.model is None:
+            raise ValueError(
+                "the model must be known for this, got paths from a file whose "
+                "potential or curve was the user's own code; sample them again."
+            )
+
     @property
     def integrator(self) -> Integrator:
         """The method, with its step and its noise."""
@@ -66,6 +74,12 @@ class Ensemble:
 
     def initial_state(self, first: int, n: int) -> Array:
         """State at which n paths from number `first` start, shape (5, n)."""
+        if self.law is None:
+            raise ValueError(
+                "the law of the start must be known for this, got paths from a file "
+                "that keeps no positions and whose law was the user's own code; sample "
+                "them again."
+            )
         return state_of(*self.start(first, n))
 
     def start(self, first: int, n: int) -> tuple[Array, Array]:

@@ -11,7 +11,7 @@ import numpy as np
 from fpsolve._support.checks import construct
 from fpsolve._support.digests import SAMPLED, digest_of, plain
 from fpsolve._support.labels import labels, to_json
-from fpsolve.evolution.layout import Part, Source, Variables
+from fpsolve.evolution.layout import Part, Source, Stored
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.model.potentials.dictionaries import potential_from_dict
 from fpsolve.paths.ensemble import START_BLOCK, GivenStart
@@ -59,25 +59,20 @@ class Law(Part):
     Its description is added to the provenance then.
     """
 
-    needed_attributes = ("initial",)
+    needed = ("initial",)
 
-    def attributes(self, result: Any) -> dict[str, Any]:
-        """The law without its arrays."""
-        return {"initial": to_json(describe_law(result.initial, result.provenance))}
-
-    def variables(self, result: Any) -> Variables:
-        """The arrays of the law."""
+    def write(self, result: Any) -> Stored:
+        """The law as JSON, and its arrays."""
         law = result.initial
+        stored: Stored = {"initial": to_json(describe_law(law, result.provenance))}
         if isinstance(law, DensityLaw):
-            name = "probability density of the start"
-            return {"initial_density": (_DENSITY, np.asarray(law.p), labels(name))}
+            name = labels("probability density of the start")
+            stored["initial_density"] = (_DENSITY, np.asarray(law.p), name)
         if isinstance(law, GivenStart):
             xi, alpha = "deviation ξ given for the start", "angle α given for the start"
-            return {
-                "initial_xi": (("initial_path", "component"), law.xi, labels(xi)),
-                "initial_alpha": (("initial_path",), law.alpha, labels(alpha)),
-            }
-        return {}
+            stored["initial_xi"] = (("initial_path", "component"), law.xi, labels(xi))
+            stored["initial_alpha"] = (("initial_path",), law.alpha, labels(alpha))
+        return stored
 
     def read(self, source: Source) -> dict[str, Any]:
         """The law."""

@@ -18,13 +18,12 @@ from fpsolve.evolution.layout import (
     Layout,
     Part,
     Source,
-    Told,
+    Stored,
     Variable,
-    Variables,
     check_counts,
     check_dimensions,
 )
-from fpsolve.evolution.parts import STATUS, Arclengths, Model, checked_step
+from fpsolve.evolution.parts import STATUS, Model, checked_step
 from fpsolve.evolution.schedule import Schedule
 from fpsolve.evolution.series import SERIES
 from fpsolve.grids.phase_space import PhaseSpaceGrid
@@ -54,17 +53,16 @@ STATES: Any = (
 )
 
 
-class Determined(Part):
+class _Determined(Part):
     """What determines the paths; a model and a law of the start have their own parts.
 
     Numbers of paths and steps must be those of the arrays.
     """
 
-    needed_attributes = ("n_paths", "seed", "method", "ds", "s_start", "n_steps",
-                         "saved_steps", "kept")  # fmt: skip
+    needed = ("n_paths", "seed", "method", "ds", "s_start", "n_steps",
+              "saved_steps", "kept")  # fmt: skip
 
-    def attributes(self, result: Any) -> dict[str, Any]:
-        """Numbers, steps, seed and method, and the grid of histograms."""
+    def write(self, result: Any) -> Stored:
         ensemble = result.ensemble
         schedule, grid = ensemble.schedule, ensemble.grid
         return {
@@ -81,7 +79,6 @@ class Determined(Part):
         }
 
     def read(self, source: Source) -> dict[str, Any]:
-        """The ensemble."""
         about = source.about
         check_steps(source.dataset, about)
         schedule = Schedule(
@@ -119,11 +116,10 @@ def check_steps(dataset: xr.Dataset, about: Mapping[str, Any]) -> None:
         )
 
 
-class Positions(Part):
+class _Positions(Part):
     """All states, and the angles, which readers of the file need the most."""
 
-    def variables(self, result: Any) -> Variables:
-        """None of paths that were not kept."""
+    def write(self, result: Any) -> Stored:
         if not result.kept:
             return {}
         words = "angle α in radians, continuous along a path"
@@ -131,21 +127,14 @@ class Positions(Part):
             _variables(getattr(result, name), *how) for name, *how in STATES
         )
         angles = {"alpha": (("s", "path"), result.alpha, labels(words))}
-        return {**here, **angles, **start, **end}
-
-    def coordinates(self, result: Any) -> Variables:
-        """Numbers of paths and components."""
-        if not result.kept:
-            return {}
         words = "component, 1 along the belt and 2 across"
-        numbers = np.arange(result.n_paths)
         return {
-            "path": ("path", numbers, labels("number of the path")),
+            **here, **angles, **start, **end,
+            "path": ("path", np.arange(result.n_paths), labels("number of the path")),
             "component": ("component", np.array([1, 2]), labels(words)),
-        }
+        }  # fmt: skip
 
     def read(self, source: Source) -> dict[str, Any]:
-        """The states, of as many paths as there are."""
         dataset, ensemble = source.dataset, source.fields["ensemble"]
         if not ensemble.keep:
             n_saved = dataset.sizes["s"]
@@ -153,7 +142,7 @@ class Positions(Part):
             return {"states": np.empty((n_saved, 5, 0)), "start": nothing,
                     "end": nothing}  # fmt: skip
         names = [prefix + name for _, prefix, *_ in STATES for name, *_ in STATE]
-        check_complete(dataset, names, ())
+        check_complete(dataset, *names)
         check_dimensions(dataset, "xi", ("s", "path", "component"))
         check_counts("n_paths", ensemble.n_paths, dataset.sizes["path"], "`xi`")
         return {name: _states(dataset, prefix) for name, prefix, *_ in STATES}
@@ -161,8 +150,8 @@ class Positions(Part):
 
 def _variables(
     states: Array, prefix: str, dimensions: tuple[str, ...], when: str
-) -> Variables:
-    variables: Variables = {}
+) -> Stored:
+    variables: Stored = {}
     for name, place, words in STATE:
         values, over = states[..., place, :], (*dimensions, "path")
         if isinstance(place, slice):
@@ -181,11 +170,10 @@ def _states(dataset: xr.Dataset, prefix: str) -> Array:
     return states
 
 
-class Estimates(Part):
+class _Estimates(Part):
     """Moments with their standard errors, for the readers of the dataset."""
 
-    def variables(self, result: Any) -> Variables:
-        """Two variables for every moment."""
+    def write(self, result: Any) -> Stored:
         moments, variables = result.moments(), {}
         for name, values in moments.values.items():
             words = SERIES[name].words if name in SERIES else "mean E ‖ξ‖²"
@@ -197,51 +185,47 @@ class Estimates(Part):
         return variables
 
 
-class Counts(Part):
+class _Counts(Part):
     """Histograms, if there are any."""
 
-    def variables(self, result: Any) -> Variables:
-        """Paths in the cells and outside of them."""
-        if result.ensemble.grid is None:
+    def write(self, result: Any) -> Stored:
+        grid = result.ensemble.grid
+        if grid is None:
             return {}
         outside = "number of paths outside of the box of cells"
+        centres = {
+            cell: (cell, getattr(grid, axis), labels(f"centre of the cell in {axis}"))
+            for axis, cell in zip(_AXES, _CELLS, strict=True)
+        }
         return {
+            **centres,
             "counts": (("s", *_CELLS), result.counts,
                        labels("number of paths in a cell")),
             "outside": ("s", result.outside, labels(outside)),
         }  # fmt: skip
 
-    def coordinates(self, result: Any) -> Variables:
-        """Centres of the cells."""
-        grid = result.ensemble.grid
-        return {} if grid is None else {
-            cell: (cell, getattr(grid, axis), labels(f"centre of the cell in {axis}"))
-            for axis, cell in zip(_AXES, _CELLS, strict=True)
-        }  # fmt: skip
-
     def read(self, source: Source) -> dict[str, Any]:
-        """The counts, of as many cells as the grid has."""
         dataset, grid = source.dataset, source.fields["ensemble"].grid
         if grid is None:
             none = np.empty((0, 0, 0, 0), np.int64)
             return {"counts": none, "outside": np.empty(0, np.int64)}
-        check_complete(dataset, ("counts", "outside"), ())
+        check_complete(dataset, "counts", "outside")
         check_counts("grid", grid.shape, dataset["counts"].shape[1:], "`counts`")
         return {name: dataset[name].values for name in ("counts", "outside")}
 
 
 PATHS = Layout(
     "Paths of the stochastic fibre lay-down process",
-    Told("Conventions", lambda _: "CF-1.11"),
+    Attribute("Conventions", values=lambda _: "CF-1.11"),
     Model(equation="process_equation"),
-    Arclengths("s", ("s",), "arclength s of the saved points"),
-    Law(),
-    Determined(),
-    Positions(),
+    Variable("s", ("s",), "arclength s of the saved points", increasing=True),
     Variable("moment_sums", ("s", "sum"),
              "sums over paths from which the moments come", "sums"),
-    Estimates(),
-    Counts(),
+    Law(),
+    _Determined(),
+    _Positions(),
+    _Estimates(),
+    _Counts(),
     STATUS,
     Attribute("message"),
 )  # fmt: skip

@@ -3,26 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, ClassVar, cast
+from operator import attrgetter
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve._support.checks import check_integer, check_real
-from fpsolve._support.memory import check_memory
+from fpsolve._support.checks import check_integer
 from fpsolve.evolution.call import Call
 from fpsolve.evolution.saved import Saved
 from fpsolve.evolution.schedule import saved_index
 from fpsolve.grids.phase_space import PhaseSpaceGrid, check_grid
-from fpsolve.model.laydown import LayDownModel
 from fpsolve.paths.averages import Observable, observed, time_averages
 from fpsolve.paths.ensemble import Ensemble, angle_of
 from fpsolve.paths.histogram import Histogram, count_paths, wrapped
 from fpsolve.paths.layout import PATHS
 from fpsolve.paths.moments import Moments
-from fpsolve.paths.runner import completed, required_memory, stepwise
+from fpsolve.paths.runner import completed, going_on
 from fpsolve.paths.trajectory import Trajectory, traced, trajectory
 
 __all__ = ["Paths"]
@@ -77,54 +76,27 @@ class Paths(Saved):
     provenance: dict[str, Any] = field(default_factory=dict)
     call: Call | None = None
 
-    @property
-    def model(self) -> LayDownModel:
-        """The model; None for a file whose potential was the user's own code."""
-        model: LayDownModel = self.ensemble.model
-        return model
+    model = property(
+        attrgetter("ensemble.model"),
+        doc="The model; None for a file whose potential was the user's own code.",
+    )
+    n_paths = property(attrgetter("ensemble.n_paths"), doc="Number of paths.")
+    ds = property(attrgetter("ensemble.schedule.ds"), doc="Step.")
+    s_start = property(
+        attrgetter("ensemble.schedule.start"),
+        doc="Arclength at which step 0 begins.",
+    )
+    seed = property(
+        attrgetter("ensemble.seed"),
+        doc="The seed: with model, method and step it determines every path.",
+    )
+    method = property(attrgetter("ensemble.method"), doc="Name of the integrator.")
+    initial = property(attrgetter("ensemble.law"), doc="Law of the start.")
+    kept = property(attrgetter("ensemble.keep"), doc="Whether positions were kept.")
 
     def check_model(self) -> None:
         """Raise ValueError unless the model is known, as the paths go on by it."""
-        if self.ensemble.model is None:
-            raise ValueError(
-                "the model must be known for this, got paths from a file whose "
-                "potential or curve was the user's own code; sample them again."
-            )
-
-    @property
-    def n_paths(self) -> int:
-        """Number of paths."""
-        return self.ensemble.n_paths
-
-    @property
-    def ds(self) -> float:
-        """Step."""
-        return self.ensemble.schedule.ds
-
-    @property
-    def s_start(self) -> float:
-        """Arclength at which step 0 begins."""
-        return self.ensemble.schedule.start
-
-    @property
-    def seed(self) -> int:
-        """The seed: with model, method and step it determines every path."""
-        return self.ensemble.seed
-
-    @property
-    def method(self) -> str:
-        """Name of the integrator."""
-        return self.ensemble.method
-
-    @property
-    def initial(self) -> Any:
-        """Law of the start."""
-        return self.ensemble.law
-
-    @property
-    def kept(self) -> bool:
-        """Whether positions were kept."""
-        return self.ensemble.keep
+        self.ensemble.check_model()
 
     def __repr__(self) -> str:
         s = ", ".join(f"{value:g}" for value in self.s[:4])
@@ -153,7 +125,7 @@ class Paths(Saved):
     def eta(self) -> Array:
         """Fibres on the belt, η = ξ + γ(s); shape (n_saved, n_paths, 2)."""
         self.check_model()
-        position = np.stack(self.model.curve.position(self.s), axis=-1)
+        position: Array = np.stack(self.model.curve.position(self.s), axis=-1)
         return self.xi + position[:, None, :]
 
     def moments(self) -> Moments:
@@ -229,11 +201,10 @@ class Paths(Saved):
             With a leading axis for a sequence. NaN at the start itself, where there is
             nothing to average.
         """
-        if isinstance(f, tuple | list):
-            return time_averages(self.ensemble, self._traced, f)
-        alone = [cast(Observable, f)]
-        found: Array = time_averages(self.ensemble, self._traced, alone)[0]
-        return found
+        several = isinstance(f, tuple | list)
+        asked: Any = f if several else [f]
+        found = time_averages(self.ensemble, self._traced, asked)
+        return found if several else np.asarray(found[0])
 
     def replay(self, k: int, every: int = 1) -> Trajectory:
         """Path k from its start to the end, at every step or every few.
@@ -284,7 +255,7 @@ class Paths(Saved):
         MemoryLimitError
             If the result would not fit into memory.
         """
-        ensemble = _going_on(self, s_end, save_at)
+        ensemble = going_on(self.ensemble, s_end, save_at)
         longer: Paths = completed(Paths, ensemble, self, None, progress)
         return longer
 
@@ -298,12 +269,6 @@ class Paths(Saved):
         """States (5, n) at which some of the paths begin."""
         if self.kept:
             return self.start[:, first : first + n].copy()
-        if self.ensemble.law is None:
-            raise ValueError(
-                "the law of the start must be known for this, got paths from a file "
-                "that keeps no positions and whose law was the user's own code; sample "
-                "them again."
-            )
         return self.ensemble.initial_state(first, n)
 
     def _kept(self, array: Array) -> Array:
@@ -320,30 +285,3 @@ class Paths(Saved):
             return len(self.s) - 1
         wanted = np.nan if s is None else s
         return saved_index(np.asarray(self.s), wanted, self.ds, "add it to `save_at`")
-
-
-def _going_on(paths: Paths, s_end: float, save_at: Iterable[float] | None) -> Ensemble:
-    """The ensemble of the same paths from their end on to `s_end`."""
-    if not paths.kept:
-        raise ValueError(
-            "the states must have been kept to go on, got paths sampled with "
-            "keep=False; sample with keep=True."
-        )
-    paths.check_model()
-    before = paths.ensemble.schedule
-    reached = before.s(before.n_steps)
-    s_end = check_real("s_end", s_end)
-    if not s_end > reached:
-        raise ValueError(
-            f"`s_end` must be beyond the end {reached:g} of the paths, got {s_end:g}."
-        )
-    schedule = stepwise(before.start, s_end, before.ds, save_at)
-    paths.ensemble.model.curve.check_span(schedule.start, schedule.end)
-    if schedule.saves and schedule.saves[0] <= before.n_steps:
-        raise ValueError(
-            f"`save_at` must lie beyond the end {reached:g} of the paths, got "
-            f"{schedule.s(schedule.saves[0]):g}."
-        )
-    ensemble = replace(paths.ensemble, schedule=schedule, first_step=before.n_steps)
-    check_memory(required_memory(ensemble), None, "save less often")
-    return ensemble

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fpsolve._support.checks import check_real
-from fpsolve._support.memory import OVERHEAD
+from fpsolve._support.memory import OVERHEAD, check_memory
 from fpsolve._support.progress import ProgressCallback, reporting
 from fpsolve._support.provenance import Stopwatch, announced_compilation
 from fpsolve.errors import NonFinitePathError, RunInterrupted
@@ -28,7 +28,7 @@ from fpsolve.paths.call import call_of
 from fpsolve.paths.ensemble import Ensemble, GivenStart
 from fpsolve.paths.integrators import LARGEST_TURN
 
-__all__ = ["completed", "required_memory", "stepwise"]
+__all__ = ["completed", "going_on", "required_memory", "stepwise"]
 
 Array = NDArray[np.float64]
 # What makes a result of an ensemble, its batches and their provenance.
@@ -256,6 +256,35 @@ def stepwise(
     span = check_real("s_start", s_start), check_real("s_end", s_end)
     schedule = make_schedule(span, ds, save_at, record_every=sys.maxsize, exact=True)
     return replace(schedule, records=())
+
+
+def going_on(
+    ensemble: Ensemble, s_end: float, save_at: Iterable[float] | None
+) -> Ensemble:
+    """The ensemble of the same paths from their end on to `s_end`."""
+    if not ensemble.keep:
+        raise ValueError(
+            "the states must have been kept to go on, got paths sampled with "
+            "keep=False; sample with keep=True."
+        )
+    ensemble.check_model()
+    before = ensemble.schedule
+    reached = before.s(before.n_steps)
+    s_end = check_real("s_end", s_end)
+    if not s_end > reached:
+        raise ValueError(
+            f"`s_end` must be beyond the end {reached:g} of the paths, got {s_end:g}."
+        )
+    schedule = stepwise(before.start, s_end, before.ds, save_at)
+    ensemble.model.curve.check_span(schedule.start, schedule.end)
+    if schedule.saves and schedule.saves[0] <= before.n_steps:
+        raise ValueError(
+            f"`save_at` must lie beyond the end {reached:g} of the paths, got "
+            f"{schedule.s(schedule.saves[0]):g}."
+        )
+    longer = replace(ensemble, schedule=schedule, first_step=before.n_steps)
+    check_memory(required_memory(longer), None, "save less often")
+    return longer
 
 
 def required_memory(ensemble: Ensemble) -> int:

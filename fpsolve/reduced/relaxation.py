@@ -2,23 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fpsolve._support.checks import check_one_of
-from fpsolve._support.progress import ProgressCallback
+from fpsolve._support.progress import ProgressCallback, reporting
 from fpsolve.errors import RunInterrupted
-from fpsolve.evolution.richardson import gain_of
+from fpsolve.evolution.evolution import WithSeries
+from fpsolve.evolution.richardson import extrapolated, extrapolated_series, gain_of
 from fpsolve.evolution.schedule import Schedule
 from fpsolve.reduced.entropy import Exchange, relative_entropy_of
 from fpsolve.reduced.implicit import METHODS, Method
-from fpsolve.reduced.step_errors import StepErrors
+from fpsolve.reduced.step_errors import allowed_error, relaxation_lengths
 
-__all__ = ["Relaxation", "extrapolated_relaxation", "relax", "relax_extrapolated"]
+__all__ = ["Relaxation", "completed", "relax", "relax_extrapolated"]
 
 Array = NDArray[np.float64]
 
@@ -27,27 +28,22 @@ _ROUNDING = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
-class Relaxation:
+class Relaxation(WithSeries):
     """Cell masses that were saved, and series over every recorded step.
 
     Attributes
     ----------
-    s, mass, relative_entropy, entropy_dissipation, minimum : ndarray, (n_recorded,)
-        Σ m, H = Σ m ln(m/π), −dH/ds = −⟨Q m, ln(m/π)⟩ and min m.
+    series : dict of ndarray, (n_recorded,)
+        "s", "mass", "relative_entropy", "entropy_dissipation", "minimum": Σ m,
+        H = Σ m ln(m/π), −dH/ds = −⟨Q m, ln(m/π)⟩ and min m; and Σ f m for each of the
+        observables f asked for.
     saved_s : ndarray, shape (n_saved,)
     saved : ndarray, shape (n_saved, n)
-    averages : dict of ndarray, (n_recorded,)
-        Σ f m for each of the observables f asked for.
     """
 
-    s: Array
-    mass: Array
-    relative_entropy: Array
-    entropy_dissipation: Array
-    minimum: Array
+    series: Mapping[str, Array]
     saved_s: Array
     saved: Array
-    averages: Mapping[str, Array] = field(default_factory=dict)
 
 
 def relax(
@@ -124,31 +120,30 @@ class Record:
         self.exchange, self.equilibrium = Exchange(generator), equilibrium
         self.schedule, self.saves = schedule, frozenset(schedule.saves)
         self.observables = observables
-        self.averages: dict[str, list[float]] = {name: [] for name in observables}
-        self.rows: list[tuple[float, ...]] = []
-        self.saved: list[Array] = []
+        self.rows: list[dict[str, float]] = []
+        self.saved: dict[int, Array] = {}
 
     def __call__(self, step: int, mass: Array) -> None:
         """Write down what the masses are after a number of steps."""
-        entropy = relative_entropy_of(mass, self.equilibrium)
-        dissipation, least = self.exchange(mass), float(mass.min())
-        total = float(mass.sum())
-        self.rows.append((self.schedule.s(step), total, entropy, dissipation, least))
-        for name, values in self.observables.items():
-            self.averages[name].append(float(values @ mass))
+        self.rows.append({
+            "s": self.schedule.s(step),
+            "mass": float(mass.sum()),
+            "relative_entropy": relative_entropy_of(mass, self.equilibrium),
+            "entropy_dissipation": self.exchange(mass),
+            "minimum": float(mass.min()),
+            **{name: float(f @ mass) for name, f in self.observables.items()},
+        })  # fmt: skip
         if step in self.saves:
-            self.saved.append(mass.copy())
+            self.saved[step] = mass.copy()
 
     def relaxation(self) -> Relaxation:
         """What was written down."""
-        reached = self.schedule.saves[: len(self.saved)]
-        saved_s = np.array([self.schedule.s(step) for step in reached])
-        saved = np.array(self.saved).reshape(len(saved_s), len(self.equilibrium))
-        averages = {name: np.array(row) for name, row in self.averages.items()}
-        series = zip(*self.rows, strict=True)
-        s, mass, entropy, dissipation, least = (np.array(row) for row in series)
+        series = {name: np.array([row[name] for row in self.rows])
+                  for name in self.rows[0]}  # fmt: skip
+        saved_s = np.array([self.schedule.s(step) for step in self.saved])
+        saved = np.array(list(self.saved.values()))
         return Relaxation(
-            s, mass, entropy, dissipation, least, saved_s, saved, averages
+            series, saved_s, saved.reshape(len(saved_s), len(self.equilibrium))
         )
 
 
@@ -162,35 +157,7 @@ def relax_extrapolated(
     observables: Mapping[str, Array] | None = None,
     report: ProgressCallback | None = None,
 ) -> tuple[Relaxation, dict[str, Array]]:
-    """Two runs of `relax`, with ds and ds/2, combined; see `extrapolated_relaxation`.
-
-    Parameters as for `relax`. The result has the stops of the run with ds. Ctrl-C in
-    the second run leaves the first one, finished and not extrapolated.
-    """
-
-    def run(stops: Schedule, n_before: int) -> Relaxation:
-        return relax(
-            generator,
-            start,
-            equilibrium,
-            stops,
-            method=method,
-            observables=observables,
-            report=_shifted(report, n_before, 3 * schedule.n_steps),
-        )
-
-    coarse = run(schedule, 0)
-    try:
-        fine = run(schedule.refined(), schedule.n_steps)
-    except RunInterrupted:
-        raise RunInterrupted(coarse) from None
-    return extrapolated_relaxation(coarse, fine, METHODS[method].order, schedule.ds)
-
-
-def extrapolated_relaxation(
-    coarse: Relaxation, fine: Relaxation, order: int, ds: float
-) -> tuple[Relaxation, dict[str, Array]]:
-    """u = (2^q u_{ds/2} − u_{ds})/(2^q − 1), and |u_{ds/2} − u_{ds}|/(2^q − 1).
+    """Two runs of `relax` combined: u = (2^q u_{ds/2} − u_{ds})/(2^q − 1).
 
     Saved masses, averages, entropy and dissipation are extrapolated separately; the
     mass is not an approximation, and the minimum is that of the finer run. The
@@ -200,36 +167,78 @@ def extrapolated_relaxation(
     has no expansion in ds. A ds beyond two time scales of the slowest mode comes with
     a warning. Extrapolated masses need not be positive.
 
+    Parameters as for `relax`. The result has the stops of the run with ds. Ctrl-C in
+    the second run leaves the first one, finished and not extrapolated.
+
     Returns
     -------
     Relaxation
     dict of ndarray
-        "relative_entropy", "entropy_dissipation" and the averages, (n_recorded,), and
-        "saved_l1" (n_saved,): Σ |error| of the saved masses.
+        Errors of "relative_entropy", "entropy_dissipation" and the averages,
+        (n_recorded,), and "saved_l1" (n_saved,): Σ |error| of the saved masses.
 
     References
     ----------
     [Ric11]_.
     """
-    gain = gain_of(order)
-    estimates = StepErrors(fine, ds, gain)
-    better: dict[str, Any] = {}
-    errors: dict[str, Array] = {}
-    for name in ("relative_entropy", "entropy_dissipation"):
-        change = getattr(fine, name) - getattr(coarse, name)
-        better[name] = getattr(fine, name) + gain * change
-        errors[name] = estimates.of_series(change)
-    averages = {}
-    for name, values in fine.averages.items():
-        change = values - coarse.averages[name]
-        averages[name], errors[name] = (
-            values + gain * change,
-            estimates.of_series(change),
-        )
-    change = fine.saved - coarse.saved
-    errors["saved_l1"] = estimates.of_saved(change)
-    saved = fine.saved + gain * change
-    return replace(fine, saved=saved, averages=averages, **better), errors
+
+    def run(stops: Schedule, n_before: int) -> Relaxation:
+        told = _shifted(report, n_before, 3 * schedule.n_steps)
+        return relax(generator, start, equilibrium, stops, method=method,
+                     observables=observables, report=told)  # fmt: skip
+
+    coarse = run(schedule, 0)
+    try:
+        fine = run(schedule.refined(), schedule.n_steps)
+    except RunInterrupted:
+        raise RunInterrupted(coarse) from None
+    gain, ds, begun = gain_of(METHODS[method].order), schedule.ds, fine.s[0]
+    series, errors = extrapolated_series(
+        fine.series, coarse.series, gain,
+        relaxation_lengths(fine.relative_entropy, fine.entropy_dissipation, ds),
+        allowed_error(fine.s - begun, ds, gain), _approximates,
+    )  # fmt: skip
+    change: Array = np.abs(fine.saved - coarse.saved).sum(axis=1)
+    errors = {name: error for name, error in errors.items() if _approximates(name)}
+    errors["saved_l1"] = allowed_error(fine.saved_s - begun, ds, gain) * change
+    saved = extrapolated(fine.saved, coarse.saved, gain)
+    return Relaxation(series, fine.saved_s, saved), errors
+
+
+def _approximates(name: str) -> bool:
+    return name not in ("s", "mass", "minimum")
+
+
+def completed(
+    make: Callable[[Relaxation, Mapping[str, Array] | None, str], Any],
+    *problem: Any,
+    extrapolate: bool,
+    progress: bool | ProgressCallback,
+    **options: Any,
+) -> Any:
+    """The result that `make` makes of a run, or of two with their errors.
+
+    Parameters
+    ----------
+    make : callable
+        Takes the relaxation, errors or None, and the status.
+    *problem, **options
+        Arguments of `relax`.
+
+    Raises
+    ------
+    RunInterrupted
+        After Ctrl-C, with the result of what was recorded.
+    """
+    with reporting(progress) as report:
+        try:
+            if extrapolate:
+                found, errors = relax_extrapolated(*problem, report=report, **options)
+                return make(found, errors, "finished")
+            return make(relax(*problem, report=report, **options), None, "finished")
+        except RunInterrupted as interrupt:
+            partial = make(interrupt.solution, None, "interrupted")
+            raise RunInterrupted(partial) from None
 
 
 def _shifted(

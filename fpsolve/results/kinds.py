@@ -198,7 +198,7 @@ def from_xarray(dataset: xr.Dataset) -> Any:
     if kind.reading:
         made = named(kind.reading)
         return restored(made, dataset) if isinstance(made, type) else made(dataset)
-    check_complete(dataset, kind.variables, kind.attributes)
+    check_complete(dataset, *kind.variables, *kind.attributes)
     return dataset
 
 

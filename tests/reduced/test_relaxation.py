@@ -92,7 +92,7 @@ def test_the_estimates_bound_the_errors_of_every_series(problem):
         "entropy_dissipation": Exchange(generator)(exact),
         "number": number @ exact,
     }
-    series = {**found.averages, **vars(found)}
+    series = found.series
     for name, value in expected.items():
         assert 0 < abs(series[name][-1] - value) < estimates[name][-1]
 
@@ -130,7 +130,7 @@ def test_the_estimates_bound_the_errors_at_every_record(begun, turn, method, rng
         "number": [number @ one for one in exact],
         "square": [number**2 @ one for one in exact],
     }
-    series = {**found.averages, **vars(found)}
+    series = found.series
     for name, values in true.items():
         # At the start the dissipation of a point is infinite; no step was made.
         off = np.abs(series[name] - values)[1:]
@@ -285,7 +285,7 @@ def test_records_saves_and_reports_are_those_of_the_schedule(problem):
     np.testing.assert_array_equal(found.s, [1.0, 1.5, 1.75, 2.5, 3.0])
     np.testing.assert_array_equal(found.saved[0], start)
     # Sums of a dozen terms.
-    assert found.averages["number"][1] == pytest.approx(number @ found.saved[1])
+    assert found.number[1] == pytest.approx(number @ found.saved[1])
     assert told == [(2, 8, 1.5), (3, 8, 1.75), (6, 8, 2.5), (8, 8, 3.0)]
 
 

@@ -7,8 +7,8 @@ from numpy.typing import NDArray
 
 from fpsolve.density.schemes.scheme import Scheme
 from fpsolve.density.stationary.estimates import DENSITY
-from fpsolve.density.stationary.evolution import Evolution
 from fpsolve.density.stationary.result import SteadyState
+from fpsolve.density.stationary.strides import Stride
 from fpsolve.grids import diagnostics, initial
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.grids.row_sums import MOMENTS
@@ -31,7 +31,7 @@ def at_rest(scheme: Scheme, ds: float) -> SteadyState:
     """
     model, grid = scheme.model, scheme.grid
     density = initial.equilibrium(grid, model.potential)
-    evolution = Evolution(scheme, ds)
+    evolution = Stride(scheme, ds)
     moved = diagnostics.l1_distance(evolution(density), density, grid)
     sums, finer = sums_on(model, grid), sums_on(model, twice(grid))
     outside = abs(1.0 - float(finer[0]))

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve.density.stationary.evolution import Evolution
+from fpsolve.density.stationary.strides import Stride
 
 __all__ = ["Correction"]
 
@@ -28,7 +28,7 @@ class Correction:
 
     Parameters
     ----------
-    evolution : Evolution
+    evolution : Stride
     base, image : ndarray, shape (n1, n2, n_alpha)
         A density and what the stride makes of it.
 
@@ -37,7 +37,7 @@ class Correction:
     The iteration is that of [HZ10]_ (scipy).
     """
 
-    def __init__(self, evolution: Evolution, base: Array, image: Array) -> None:
+    def __init__(self, evolution: Stride, base: Array, image: Array) -> None:
         self.evolution, self.base, self.image = evolution, base, image
         self.size = float(np.abs(base).sum())
         self.remembered: list[Any] = []

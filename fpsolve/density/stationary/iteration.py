@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from fpsolve.density.schemes.drift_kick import DriftKick
 from fpsolve.density.stationary.acceleration import Acceleration
 from fpsolve.density.stationary.correction import Correction
-from fpsolve.density.stationary.evolution import Strides
+from fpsolve.density.stationary.strides import Strides
 from fpsolve.errors import SteadyStateError
 from fpsolve.grids import diagnostics
 

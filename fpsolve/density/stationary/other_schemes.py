@@ -10,9 +10,10 @@ from numpy.typing import NDArray
 from fpsolve.density.schemes.scheme import Scheme
 from fpsolve.density.stationary.correction import DISTURBANCE
 from fpsolve.density.stationary.estimates import DENSITY, field_error, scaled, total
-from fpsolve.density.stationary.evolution import Evolution
 from fpsolve.density.stationary.result import SteadyState
+from fpsolve.density.stationary.strides import Stride
 from fpsolve.errors import SteadyStateError
+from fpsolve.evolution.richardson import extrapolated, gain_of
 from fpsolve.grids import diagnostics, initial
 
 __all__ = ["judged", "own_density"]
@@ -53,17 +54,16 @@ def own_density(
         If the residual stays above `tolerance`.
     """
     start = initial.equilibrium(scheme.grid, scheme.model.potential)
-    coarse = reproduced(Evolution(scheme, ds), start, tolerance)
+    coarse = reproduced(Stride(scheme, ds), start, tolerance)
     if not extrapolate:
         return coarse
-    fine = reproduced(Evolution(scheme, ds / 2), coarse.density, tolerance)
-    gain = 1.0 / (2**scheme.order - 1)
-    density = fine.density + gain * (fine.density - coarse.density)
+    fine = reproduced(Stride(scheme, ds / 2), coarse.density, tolerance)
+    density = extrapolated(fine.density, coarse.density, gain_of(scheme.order))
     n = coarse.n_applications + fine.n_applications
     return OwnDensity(density, fine.residual, ds, True, n)
 
 
-def reproduced(evolution: Evolution, p: Array, tolerance: float) -> OwnDensity:
+def reproduced(evolution: Stride, p: Array, tolerance: float) -> OwnDensity:
     """The density that a stride leaves unchanged, by Newton's method from p."""
     for _ in range(MOST_CORRECTIONS):
         image = evolution(p)
@@ -76,7 +76,7 @@ def reproduced(evolution: Evolution, p: Array, tolerance: float) -> OwnDensity:
     raise SteadyStateError(residual, tolerance)
 
 
-def improved(evolution: Evolution, p: Array, image: Array, goal: float) -> Array:
+def improved(evolution: Stride, p: Array, image: Array, goal: float) -> Array:
     """A better fixed point: p + d with (I − E′) d = E(p) − p, then normalised.
 
     E may depend on p a little more than linearly, through corrections of the mass:

@@ -1,4 +1,7 @@
-"""The same density on coarser grids first: a start for the finest, and its error."""
+"""The same density on coarser grids first: a start for the finest, and its error.
+
+Not extrapolated: at which order the grids converge is not known, a factor covers it.
+"""
 
 from __future__ import annotations
 

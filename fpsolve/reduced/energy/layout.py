@@ -11,13 +11,12 @@ from fpsolve.evolution.layout import (
     Layout,
     Part,
     Source,
+    Stored,
     Variable,
-    Variables,
-    Written,
     check_counts,
     check_dimensions,
 )
-from fpsolve.evolution.parts import SAVED, STATUS, STEP, Arclengths, Recorded
+from fpsolve.evolution.parts import SAVED, STATUS, STEP, Recorded
 from fpsolve.model.potentials.dictionaries import potential_from_dict, potential_to_dict
 from fpsolve.model.stored import is_of_a_user
 from fpsolve.reduced.energy.grid import EnergyGrid
@@ -57,20 +56,18 @@ def process_attributes(process: Any, provenance: Any) -> dict[str, Any]:
     }
 
 
-class Process(Part):
+class _Process(Part):
     """The energy process; None with a warning if its potential was a user's own.
 
     What described it is in the provenance then.
     """
 
-    needed_attributes = ("potential", "noise")
+    needed = ("potential", "noise")
 
-    def attributes(self, result: Any) -> dict[str, Any]:
-        """Its potential and noise, and what follows from them."""
+    def write(self, result: Any) -> Stored:
         return process_attributes(result.process, result.provenance)
 
     def read(self, source: Source) -> dict[str, Any]:
-        """The process, made by the owner of that name."""
         about = source.about
         try:
             potential = potential_from_dict(about["potential"])
@@ -91,52 +88,44 @@ class Process(Part):
         return {"process": source.owners["process"](potential, noise)}
 
 
-class Cells(Part):
+class _Cells(Part):
     """The cells of energy; those of the file without the process that makes them."""
 
-    needed = ("g", "face", "stationary_mass")
-    needed_attributes = ("n_cells", "signed")
+    needed = ("g", "face", "stationary_mass", "n_cells", "signed")
 
-    def variables(self, result: Any) -> Variables:
-        """Their stationary masses."""
-        masses = result.grid.equilibrium
-        return {"stationary_mass": ("g", masses, labels("stationary cell masses"))}
-
-    def coordinates(self, result: Any) -> Variables:
-        """Their centres (stationary means) and ends."""
+    def write(self, result: Any) -> Stored:
         grid, mean = result.grid, "mean energy of the cell, stationary law"
         return {
+            "stationary_mass": ("g", grid.equilibrium,
+                                labels("stationary cell masses")),
             "g": ("g", grid.centres, labels(mean)),
             "face": ("face", grid.faces, labels("ends of the cells")),
-        }
-
-    def attributes(self, result: Any) -> dict[str, Any]:
-        """Their number, and whether energies are signed."""
-        return {"n_cells": result.grid.n_cells, "signed": int(result.grid.signed)}
+            "n_cells": grid.n_cells,
+            "signed": int(grid.signed),
+        }  # fmt: skip
 
     def read(self, source: Source) -> dict[str, Any]:
-        """As many cells as there are masses."""
         dataset, signed = source.dataset, bool(source.about["signed"])
         n_cells = dataset["cell_mass"].shape[-1]
         check_counts("n_cells", source.about["n_cells"], n_cells, "`cell_mass`")
-        for name, over in (("g", "g"), ("face", "face"), ("stationary_mass", "g")):
+        cells = {"face": "face", "g": "g", "stationary_mass": "g"}
+        for name, over in cells.items():
             check_dimensions(dataset, name, (over,))
-        process = source.fields["process"]
-        if process is not None:
-            return {"grid": process.grid(dataset.sizes["g"], signed)}
-        faces, centres, masses = (dataset[name].values for name in
-                                  ("face", "g", "stationary_mass"))  # fmt: skip
+        if source.fields["process"] is not None:
+            return {"grid": source.fields["process"].grid(n_cells, signed)}
+        faces, centres, masses = (dataset[name].values for name in cells)
         return {"grid": EnergyGrid.of_cells(faces, centres, masses, signed)}
 
 
 _CELLS = ("s", "g")
 SOLUTION = Layout(
     "law of the energy process of fibre lay-down",
-    Process(),
+    _Process(),
     SAVED,
-    Written("density", _CELLS, lambda one: one.densities, "cell means of p(g, s)"),
+    Variable("density", _CELLS, "cell means of p(g, s)",
+             values=lambda solution: solution.densities),
     Variable("cell_mass", _CELLS, "masses of the cells", "masses"),
-    Cells(),
+    _Cells(),
     Variable("initial_mass", ("g",), "masses of the cells at the start, as given",
              "initial_masses", optional=True),
     Recorded(words=words),
@@ -146,11 +135,11 @@ SOLUTION = Layout(
 )  # fmt: skip
 PATHS = Layout(
     "Paths of the energy process of fibre lay-down",
-    Process(),
-    Arclengths("s", ("s",), "arclength s of the saved points"),
+    _Process(),
+    Variable("s", ("s",), "arclength s of the saved points", increasing=True),
     Variable("energy", ("s", "path"), "signed energy G", "g"),
     STEP,
     # As text, because a seed may be longer than any integer of a file.
-    Attribute("seed", write=str, make=int),
+    Attribute("seed", write_as=str, read_as=int),
     Attribute("method"),
 )

@@ -11,9 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from fpsolve._support.blas import one_blas_thread
 from fpsolve._support.checks import check_flag
-from fpsolve._support.progress import ProgressCallback, reporting
+from fpsolve._support.progress import ProgressCallback
 from fpsolve._support.provenance import Stopwatch
-from fpsolve.errors import RunInterrupted
 from fpsolve.evolution.call import Kept, recorded
 from fpsolve.evolution.schedule import checked_stops, make_schedule
 from fpsolve.reduced.energy.coefficients import Coefficients
@@ -23,13 +22,11 @@ from fpsolve.reduced.energy.sampling import EnergyPaths, sample_energies
 from fpsolve.reduced.energy.solution import EnergySolution
 from fpsolve.reduced.energy.spectrum import EnergySpectrum, energy_spectrum
 from fpsolve.reduced.energy.start import masses_of, starting_masses
-from fpsolve.reduced.relaxation import Relaxation, relax, relax_extrapolated
+from fpsolve.reduced.relaxation import Relaxation, completed
 
 __all__ = ["EnergyProcess"]
 
 Array = NDArray[np.float64]
-
-_SERIES = ("s", "mass", "relative_entropy", "entropy_dissipation", "minimum")
 
 
 def _described_start(start: Any, arguments: Mapping[str, Any]) -> Kept:
@@ -176,36 +173,24 @@ class EnergyProcess(Coefficients):
         save_at = None if save_at is None else checked_stops(save_at)
         schedule = make_schedule(s_span, ds, save_at, record_every)
         start = masses_of(start, grid)
-        masses = starting_masses(start, grid)
-        generator = grid.generator(self.noise)
-        arguments = (generator, masses, grid.equilibrium, schedule)
+        extrapolate = check_flag("extrapolate", extrapolate)
         watch = Stopwatch()
 
         def solution(
-            found: Relaxation,
-            errors: Mapping[str, Array] | None,
-            status: str = "finished",
+            found: Relaxation, errors: Mapping[str, Array] | None, status: str
         ) -> EnergySolution:
-            series = {name: getattr(found, name) for name in _SERIES}
-            n_steps = schedule.n_steps * (3 if extrapolate else 1)
-            provenance = watch.provenance(n_steps)
+            n_steps = schedule.n_steps * (1 + 2 * (errors is not None))
             return EnergySolution(
-                self, grid, method, schedule.ds, series, errors, found.saved_s,
-                found.saved, provenance, start, status,
+                self, grid, method, schedule.ds, found.series, errors, found.saved_s,
+                found.saved, watch.provenance(n_steps), start, status,
             )  # fmt: skip
 
-        extrapolate = check_flag("extrapolate", extrapolate)
-        with reporting(progress) as report:
-            try:
-                if not extrapolate:
-                    found = relax(*arguments, method=method, report=report)
-                    return solution(found, None)
-                return solution(
-                    *relax_extrapolated(*arguments, method=method, report=report)
-                )
-            except RunInterrupted as interrupt:
-                partial = solution(interrupt.solution, None, "interrupted")
-                raise RunInterrupted(partial) from None
+        solved: EnergySolution = completed(
+            solution, grid.generator(self.noise), starting_masses(start, grid),
+            grid.equilibrium, schedule,
+            method=method, extrapolate=extrapolate, progress=progress,
+        )  # fmt: skip
+        return solved
 
     @recorded()
     @one_blas_thread()

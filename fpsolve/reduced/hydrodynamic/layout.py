@@ -4,16 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from fpsolve.evolution.layout import Attribute, Layout, Variable, Written
-from fpsolve.evolution.parts import (
-    SAVED,
-    STATUS,
-    STEP,
-    Arclengths,
-    Model,
-    OnGrid,
-    Recorded,
-)
+from fpsolve.evolution.layout import Attribute, Layout, Variable
+from fpsolve.evolution.parts import SAVED, STATUS, STEP, Model, OnGrid, Recorded
 from fpsolve.evolution.series import long_name
 from fpsolve.grids.plane import PlaneGrid
 
@@ -43,18 +35,18 @@ SOLUTION = Layout(
 PATHS = Layout(
     "Paths of the hydrodynamic limit of fibre lay-down",
     Model(),
-    Arclengths("s", ("s",), "arclength s of the saved points"),
+    Variable("s", ("s",), "arclength s of the saved points", increasing=True),
     Variable("xi", ("s", "path", "component"), "deviation ξ"),
-    Written("mean", _COMPONENT, lambda one: one.mean()[0], "mean E ξ"),
-    Written("mean_standard_error", _COMPONENT, lambda one: one.mean()[1],
-            "its standard error"),
-    Written("covariance", ("s", *_PAIR), lambda one: one.covariance()[0],
-            "covariance of ξ"),
-    Written("covariance_standard_error", ("s", *_PAIR),
-            lambda one: one.covariance()[1], "standard error"),
-    *(Written(name, (name,), lambda _: np.array([1, 2]), "1 along the belt, 2 across",
-              coordinate=True) for name in _PAIR),
+    Variable("mean", _COMPONENT, "mean E ξ", values=lambda paths: paths.mean()[0]),
+    Variable("mean_standard_error", _COMPONENT, "its standard error",
+             values=lambda paths: paths.mean()[1]),
+    Variable("covariance", ("s", *_PAIR), "covariance of ξ",
+             values=lambda paths: paths.covariance()[0]),
+    Variable("covariance_standard_error", ("s", *_PAIR), "standard error",
+             values=lambda paths: paths.covariance()[1]),
+    *(Variable(name, (name,), "1 along the belt, 2 across",
+               values=lambda _: np.array([1, 2])) for name in _PAIR),
     Attribute("method"),
     # Zero where only the start is saved.
-    Attribute("ds", make=float),
+    Attribute("ds", read_as=float),
 )  # fmt: skip

@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from fpsolve._support.blas import one_blas_thread
-from fpsolve._support.checks import check_flag, check_tolerance
+from fpsolve._support.checks import check_flag, check_positive, check_tolerance
 from fpsolve._support.progress import ProgressCallback
 from fpsolve.errors import DomainTooSmallError
 from fpsolve.evolution.call import Kept, recorded
-from fpsolve.evolution.schedule import checked_stops
+from fpsolve.evolution.schedule import checked_stops, make_schedule
 from fpsolve.grids import diagnostics
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.grids.plane import PlaneGrid, plane_of
@@ -178,17 +178,17 @@ class HydrodynamicLimit(LimitEquation):
             slowest mode, so that its estimates may be too small.
         """
         plane = plane_of(grid)
-        arguments = run.Arguments(
-            start=run.checked_start(P0, plane),
-            s_span=s_span,
-            ds=ds,
-            method=method,
-            save_at=None if save_at is None else tuple(checked_stops(save_at)),
-            extrapolate=check_flag("extrapolate", extrapolate),
-            record_every=record_every,
-            boundary_tolerance=boundary_tolerance,
-        )
-        return run.solve(self, plane, arguments, progress)
+        start = run.checked_start(P0, plane)
+        save_at = None if save_at is None else checked_stops(save_at)
+        extrapolate = check_flag("extrapolate", extrapolate)
+        check_positive("boundary_tolerance", boundary_tolerance)
+        schedule = make_schedule(s_span, ds, save_at, record_every)
+        found = run.solve(
+            self, plane, start, schedule, method=method, extrapolate=extrapolate,
+            progress=progress,
+        )  # fmt: skip
+        run.check_box(found, boundary_tolerance)
+        return found
 
     @one_blas_thread()
     def spectrum(

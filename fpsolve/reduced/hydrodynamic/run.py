@@ -2,43 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve._support.checks import check_positive
-from fpsolve._support.progress import ProgressCallback, reporting
+from fpsolve._support.progress import ProgressCallback
 from fpsolve._support.provenance import Stopwatch
-from fpsolve.errors import DomainTooSmallError, RunInterrupted
-from fpsolve.evolution.schedule import Schedule, make_schedule
+from fpsolve.errors import DomainTooSmallError
+from fpsolve.evolution.schedule import Schedule
 from fpsolve.grids.plane import PlaneGrid
 from fpsolve.reduced.hydrodynamic.equation import LimitEquation
 from fpsolve.reduced.hydrodynamic.scharfetter_gummel import gibbs_masses
 from fpsolve.reduced.hydrodynamic.solution import HydrodynamicSolution
-from fpsolve.reduced.relaxation import Relaxation, relax, relax_extrapolated
+from fpsolve.reduced.relaxation import Relaxation, completed
 
-__all__ = ["Arguments", "checked_start", "solve"]
+__all__ = ["check_box", "checked_start", "solve"]
 
 Array = NDArray[np.float64]
 
 _MOMENTS = ("xi1", "xi2", "xi1_xi1", "xi2_xi2", "xi1_xi2")
-
-
-@dataclass(frozen=True)
-class Arguments:
-    """What `HydrodynamicLimit.solve` was asked for."""
-
-    start: Array
-    s_span: tuple[float, float]
-    ds: float
-    method: str
-    save_at: Sequence[float] | None
-    extrapolate: bool
-    record_every: int
-    boundary_tolerance: float
 
 
 def checked_start(given: Any, plane: PlaneGrid) -> Array:
@@ -58,61 +43,42 @@ def checked_start(given: Any, plane: PlaneGrid) -> Array:
 def solve(
     limit: LimitEquation,
     plane: PlaneGrid,
-    arguments: Arguments,
+    start: Array,
+    schedule: Schedule,
+    *,
+    method: str,
+    extrapolate: bool,
     progress: bool | ProgressCallback,
 ) -> HydrodynamicSolution:
     """Relax the cell masses and read densities and series off them."""
-    check_positive("boundary_tolerance", arguments.boundary_tolerance)
-    schedule = make_schedule(
-        arguments.s_span, arguments.ds, arguments.save_at, arguments.record_every
-    )
-    masses = arguments.start.ravel() * plane.cell_area
-    phi = limit.effective_potential(*plane.mesh())
-    stationary = gibbs_masses(phi).ravel()
     watch = Stopwatch()
-    options: dict[str, Any] = {"method": arguments.method}
-    options["observables"] = observables(plane)
 
     def solution(
-        relaxation: Relaxation,
-        errors: Mapping[str, Array] | None,
-        status: str = "finished",
+        found: Relaxation, errors: Mapping[str, Array] | None, status: str
     ) -> HydrodynamicSolution:
         n_steps = schedule.n_steps * (1 + 2 * (errors is not None))
         return HydrodynamicSolution(
             limit=limit,
             grid=plane,
-            method=arguments.method,
+            method=method,
             ds=schedule.ds,
-            series=series_of(relaxation, plane),
-            saved_s=relaxation.saved_s,
-            densities=relaxation.saved.reshape(-1, *plane.shape) / plane.cell_area,
-            errors=None if errors is None else errors_of(relaxation, errors),
+            series=series_of(found, plane),
+            saved_s=found.saved_s,
+            densities=found.saved.reshape(-1, *plane.shape) / plane.cell_area,
+            errors=None if errors is None else errors_of(found, errors),
             provenance=watch.provenance(n_steps),
-            initial_density=arguments.start,
+            initial_density=start,
             status=status,
         )
 
-    with reporting(progress) as options["report"]:
-        problem = limit.generator(plane), masses, stationary, schedule
-        try:
-            found = solution(*relaxed(problem, options, arguments.extrapolate))
-        except RunInterrupted as interrupt:
-            partial = solution(interrupt.solution, None, "interrupted")
-            raise RunInterrupted(partial) from None
-    check_box(found, arguments.boundary_tolerance)
-    return found
-
-
-def relaxed(
-    problem: tuple[Any, Array, Array, Schedule],
-    options: dict[str, Any],
-    extrapolate: bool,
-) -> tuple[Relaxation, Mapping[str, Array] | None]:
-    """The relaxation, with errors if it is extrapolated."""
-    if extrapolate:
-        return relax_extrapolated(*problem, **options)
-    return relax(*problem, **options), None
+    masses = start.ravel() * plane.cell_area
+    stationary = gibbs_masses(limit.effective_potential(*plane.mesh())).ravel()
+    solved: HydrodynamicSolution = completed(
+        solution, limit.generator(plane), masses, stationary, schedule,
+        method=method, observables=observables(plane), extrapolate=extrapolate,
+        progress=progress,
+    )  # fmt: skip
+    return solved
 
 
 def observables(plane: PlaneGrid) -> dict[str, Array]:
@@ -126,7 +92,7 @@ def observables(plane: PlaneGrid) -> dict[str, Array]:
 
 def series_of(relaxation: Relaxation, plane: PlaneGrid) -> dict[str, Array]:
     """Series of the density from those of the cell masses."""
-    mass, mean = relaxation.mass, relaxation.averages
+    mass, mean = relaxation.mass, relaxation.series
     mean1, mean2 = mean["xi1"] / mass, mean["xi2"] / mass
     return {
         "s": relaxation.s,
@@ -149,7 +115,7 @@ def errors_of(relaxation: Relaxation, errors: Mapping[str, Array]) -> dict[str, 
     Those of averages add up in the variances, which are differences of them.
     """
     mass = relaxation.mass
-    mean1, mean2 = (np.abs(relaxation.averages[name] / mass) for name in _MOMENTS[:2])
+    mean1, mean2 = (np.abs(relaxation.series[name] / mass) for name in _MOMENTS[:2])
     of = {name: errors[name] / mass for name in (*_MOMENTS, "ring")}
     error1, error2 = of["xi1"], of["xi2"]
     return {

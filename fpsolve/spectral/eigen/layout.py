@@ -13,10 +13,8 @@ from fpsolve.evolution.layout import (
     Layout,
     Part,
     Source,
-    Told,
+    Stored,
     Variable,
-    Variables,
-    Written,
     check_counts,
 )
 from fpsolve.evolution.parts import Model
@@ -32,52 +30,41 @@ __all__ = ["SPECTRUM"]
 _INDEX = ("index",)
 
 
-class Eigenvalues(Part):
+class _Eigenvalues(Part):
     """Eigenvalues, in two parts."""
 
     needed = ("real", "imag")
 
-    def variables(self, result: Any) -> Variables:
-        """Re λ and Im λ."""
+    def write(self, result: Any) -> Stored:
         values = result.eigenvalues
         return {
+            "index": ("index", np.arange(len(values))),
             "real": (_INDEX, values.real, labels("Re λ")),
             "imag": (_INDEX, values.imag, labels("Im λ")),
         }
 
-    def coordinates(self, result: Any) -> Variables:
-        """Numbers of the eigenvalues."""
-        return {"index": np.arange(len(result.eigenvalues))}
-
     def read(self, source: Source) -> dict[str, Any]:
-        """The eigenvalues."""
         return {"eigenvalues": joined(source.dataset)}
 
 
-class Sectors(Part):
-    """Where each eigenvalue belongs, in words and as JSON."""
+class _Sectors(Part):
+    """Where each eigenvalue belongs, in words and as JSON; one for each of them."""
 
-    needed = ("sector",)
-    needed_attributes = ("sectors",)
+    needed = ("sector", "sectors")
 
-    def variables(self, result: Any) -> Variables:
-        """The words."""
+    def write(self, result: Any) -> Stored:
         words = np.array([str(one) for one in result.sectors], dtype=object)
-        return {"sector": (_INDEX, words)}
-
-    def attributes(self, result: Any) -> dict[str, Any]:
-        """The sectors."""
-        return {"sectors": to_json([one.to_dict() for one in result.sectors])}
+        described = to_json([one.to_dict() for one in result.sectors])
+        return {"sector": (_INDEX, words), "sectors": described}
 
     def read(self, source: Source) -> dict[str, Any]:
-        """As many sectors as there are eigenvalues."""
         sectors = [Sector(**one) for one in source.about["sectors"]]
         n = source.dataset.sizes["index"]
         check_counts("sectors", len(sectors), n, "`index`")
         return {"sectors": sectors}
 
 
-class Modes(Part):
+class _Modes(Part):
     """Coefficients of all eigenfunctions, one behind the other.
 
     Without a model there is no basis, and no eigenfunction.
@@ -85,8 +72,7 @@ class Modes(Part):
 
     needed = ("mode_degree", "mode_harmonics", "mode_size", "mode_real", "mode_imag")
 
-    def variables(self, result: Any) -> Variables:
-        """Truncations, numbers of coefficients, and these."""
+    def write(self, result: Any) -> Stored:
         modes = result._modes
         vectors = np.concatenate(
             [np.zeros(0, complex), *(mode.vector for mode in modes)]
@@ -104,7 +90,6 @@ class Modes(Part):
         }  # fmt: skip
 
     def read(self, source: Source) -> dict[str, Any]:
-        """The modes, and the basis that they are in."""
         model, sectors = source.fields["model"], source.fields["sectors"]
         if model is None:
             return {"_modes": [], "_discretisation": None}
@@ -126,7 +111,7 @@ def modes_of(
 ) -> Iterator[Mode]:
     """Every mode with its own coefficients."""
     vectors = joined(dataset, "mode_")
-    degrees, harmonics, sizes = (dataset[name].to_numpy() for name in Modes.needed[:3])
+    degrees, harmonics, sizes = (dataset[name].to_numpy() for name in _Modes.needed[:3])
     check_counts("mode_size", int(sizes.sum()), vectors.size, "`mode_real`")
     parts = np.split(vectors, np.cumsum(sizes)[:-1])
     for place, sector in enumerate(sectors):
@@ -137,16 +122,16 @@ def modes_of(
 SPECTRUM = Layout(
     "Eigenvalues of the generator",
     Model(),
-    Eigenvalues(),
+    _Eigenvalues(),
     Variable("error", _INDEX, "error of λ", "errors"),
     Variable("residual", _INDEX, "‖Lf − λf‖/‖f‖", "residuals"),
-    Written("multiplicity", _INDEX, lambda found: found.multiplicities,
-            "sectors with this eigenvalue"),
-    Sectors(),
-    Modes(),
-    Told("gap", lambda found: found.gap),
-    Told("gap_error", lambda found: found.gap_error),
-    Attribute("truncation", write=lambda sizes: to_json([int(one) for one in sizes]),
-              make=lambda sizes: Truncation(*sizes)),
+    Variable("multiplicity", _INDEX, "sectors with this eigenvalue",
+             values=lambda found: found.multiplicities),
+    _Sectors(),
+    _Modes(),
+    Attribute("gap", values=lambda found: found.gap),
+    Attribute("gap_error", values=lambda found: found.gap_error),
+    Attribute("truncation", write_as=lambda sizes: to_json([int(one) for one in sizes]),
+              read_as=lambda sizes: Truncation(*sizes)),
     Attribute("essential", optional=True),
 )  # fmt: skip

@@ -14,12 +14,12 @@ from fpsolve.evolution.layout import (
     Layout,
     Part,
     Source,
+    Stored,
     Variable,
-    Variables,
     check_counts,
     check_dimensions,
 )
-from fpsolve.evolution.parts import Arclengths, Model
+from fpsolve.evolution.parts import Model
 from fpsolve.evolution.series import long_name
 from fpsolve.grids.row_sums import MOMENTS
 from fpsolve.model.laydown import LayDownModel
@@ -37,22 +37,20 @@ SERIES = ("mass", "relative_entropy", *MOMENTS)
 _LARGEST = 2000
 
 
-class QuadraticModel(Model):
+class _QuadraticModel(Model):
     """A model with a potential of this package, or the dataset is refused."""
 
     def read(self, source: Source) -> dict[str, Any]:
-        """The model."""
         return {"model": LayDownModel.from_dict(source.about["model"])}
 
 
-class Expansions(Part):
+class _Expansions(Part):
     """Coefficients within the limits, of all expansions one behind the other."""
 
     over = "s"
     needed = ("degree", "harmonics", "n_limits", "limit", "coefficient")
 
-    def variables(self, result: Any) -> Variables:
-        """Truncations, limits and coefficients."""
+    def write(self, result: Any) -> Stored:
         truncations, expansions = self.held(result)
         kept = np.array(list(truncations), np.int64).reshape(-1, 2)
         limits = np.concatenate([one.limits for one in expansions])
@@ -71,41 +69,36 @@ class Expansions(Part):
         }
 
     def read(self, source: Source) -> dict[str, Any]:
-        """The expansions, each of as many coefficients as its limits say."""
         for name in self.needed[:3]:
             check_dimensions(source.dataset, name, (self.over,))
         pairs = (map(int, source.dataset[name].values) for name in self.needed[:2])
         return self.fields(tuple(zip(*pairs, strict=True)), unpacked(source.dataset))
 
     def held(self, result: Any) -> tuple[Iterable[Truncation], Sequence[Expansion]]:
-        """Truncations and expansions of a solution."""
         return result.truncation, result._expansions
 
     def fields(
         self, truncations: Sequence[Truncation], expansions: tuple[Expansion, ...]
     ) -> dict[str, Any]:
-        """What a solution makes of them."""
         return {"truncation": truncations, "_expansions": expansions}
 
 
-class FineAndCoarse(Expansions):
+class _FineAndCoarse(_Expansions):
     """That of a stationary density, and that of the next coarser truncation."""
 
     over = "expansion"
 
-    def coordinates(self, result: Any) -> Variables:
-        """Which is which."""
-        return {self.over: (self.over, np.array(["fine", "coarse"], dtype=object))}
+    def write(self, result: Any) -> Stored:
+        names = np.array(["fine", "coarse"], dtype=object)
+        return {self.over: (self.over, names), **super().write(result)}
 
     def held(self, result: Any) -> tuple[Iterable[Truncation], Sequence[Expansion]]:
-        """Both."""
         both = (result._expansion, result._coarser)
         return [(one.degree, one.harmonics) for one in both], both
 
     def fields(
         self, truncations: Sequence[Truncation], expansions: tuple[Expansion, ...]
     ) -> dict[str, Any]:
-        """Both; the truncation is that of the finer."""
         check_counts(self.over, 2, len(expansions), "`n_limits`")
         fine, coarse = expansions
         return {"truncation": truncations[0], "_expansion": fine, "_coarser": coarse}
@@ -136,18 +129,18 @@ def words_of_error(name: str) -> str:
 
 SOLUTION = Layout(
     "Expansion of the fibre lay-down density in time",
-    QuadraticModel(),
-    Arclengths("s", ("s",), "arclength s"),
+    _QuadraticModel(),
+    Variable("s", ("s",), "arclength s", increasing=True),
     Columns("series", SERIES, ("s",), long_name),
     Columns("errors", SERIES, ("s",), words_of_error, "{}_error"),
-    Expansions(),
-    Attribute("tolerance", make=float),
+    _Expansions(),
+    Attribute("tolerance", read_as=float),
 )
 STEADY = Layout(
     "Stationary fibre lay-down density by expansion",
-    QuadraticModel(),
+    _QuadraticModel(),
     Variable("residual", (), "‖L* h‖/‖h‖ in L²(μ)", kind=float),
     Columns("moments", MOMENTS, (), long_name, kind=float),
     Columns("errors", MOMENTS, (), words_of_error, "{}_error", float),
-    FineAndCoarse(),
+    _FineAndCoarse(),
 )

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from fpsolve._support.checks import told_apart
 from fpsolve.evolution.call import Call
 from fpsolve.evolution.evolution import WithSeries
+from fpsolve.evolution.saved import Saved
 from fpsolve.evolution.schedule import index_of
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.model.laydown import LayDownModel
@@ -27,7 +28,7 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class SpectralSolution(WithSeries):
+class SpectralSolution(WithSeries, Saved):
     """H(s) and moments of p(ξ, α, s), with an error estimate for every number.
 
     Attributes `mass`, `relative_entropy`, `mean_xi1`, `mean_xi2`, `variance_xi1`,

@@ -14,8 +14,7 @@ from fpsolve.evolution.layout import (
     Layout,
     Part,
     Source,
-    Told,
-    Variables,
+    Stored,
     check_counts,
 )
 from fpsolve.evolution.parts import Model
@@ -42,13 +41,12 @@ NO_DEGREES = -1
 _TESTS = ("s", "test")
 
 
-class Tests(Part):
+class _Tests(Part):
     """Every number of every test, over arclengths, then names."""
 
     needed = (*NUMBERS, "degrees", "s", "test")
 
-    def variables(self, result: Any) -> Variables:
-        """A variable for every number."""
+    def write(self, result: Any) -> Stored:
         degrees = [
             NO_DEGREES if one.degrees is None else one.degrees for one in result.tests
         ]
@@ -60,19 +58,15 @@ class Tests(Part):
             "degrees": (degrees, np.int64,
                         "degrees of freedom, -1 if the test has none"),
         }  # fmt: skip
-        return {
+        names = np.array(list(result.detectable), dtype=object)
+        here = {"s": ("s", result.s, labels("arclength s")), "test": ("test", names)}
+        return here | {
             name: (_TESTS, np.array(values, dtype=kind).reshape(len(result.s), -1),
                    labels(words))
             for name, (values, kind, words) in tables.items()
         }  # fmt: skip
 
-    def coordinates(self, result: Any) -> Variables:
-        """Arclengths, and names of the tests."""
-        names = np.array(list(result.detectable), dtype=object)
-        return {"s": ("s", result.s, labels("arclength s")), "test": ("test", names)}
-
     def read(self, source: Source) -> dict[str, Any]:
-        """The arclengths and the tests."""
         values = {name: source.dataset[name].to_numpy() for name in self.needed}
         return {"s": values["s"], "tests": tuple(tests_of(values))}
 
@@ -89,21 +83,16 @@ def tests_of(values: dict[str, Any]) -> Iterator[AgreementTest]:
             )  # fmt: skip
 
 
-class Cells(Part):
-    """The grid, whose axes are those of the marginals."""
+class _Cells(Part):
+    """The grid, whose axes are those of the marginals; of as many cells as they."""
 
-    needed_attributes = ("grid",)
+    needed = ("grid",)
 
-    def coordinates(self, result: Any) -> Variables:
-        """Centres of the cells."""
-        return {axis: (axis, getattr(result.grid, axis)) for axis in MARGINALS}
-
-    def attributes(self, result: Any) -> dict[str, Any]:
-        """The grid as JSON."""
-        return {"grid": to_json(result.grid.to_dict())}
+    def write(self, result: Any) -> Stored:
+        centres = {axis: (axis, getattr(result.grid, axis)) for axis in MARGINALS}
+        return {**centres, "grid": to_json(result.grid.to_dict())}
 
     def read(self, source: Source) -> dict[str, Any]:
-        """The grid, of as many cells as the marginals."""
         grid = PhaseSpaceGrid.from_dict(source.about["grid"])
         for axis, n in zip(MARGINALS, grid.shape, strict=True):
             check_counts("grid", n, source.dataset.sizes[axis], f"`{axis}`")
@@ -112,15 +101,15 @@ class Cells(Part):
 
 CHECK = Layout(
     "Density against paths",
-    Told("verdict", str),
-    Told("agrees", lambda check: int(check.agrees)),
-    Attribute("false_alarm", make=float),
+    Attribute("verdict", values=str),
+    Attribute("agrees", values=lambda check: int(check.agrees)),
+    Attribute("false_alarm", read_as=float),
     Attribute("n_paths"),
     Model(),
-    Cells(),
-    Attribute("solver", write=to_json),
-    Attribute("sampler", write=to_json),
-    Tests(),
+    _Cells(),
+    Attribute("solver", write_as=to_json),
+    Attribute("sampler", write_as=to_json),
+    _Tests(),
     Columns("probabilities", MARGINALS, ("s", "{}"),
             "probability of a cell of {} by the density".format, "probability_{}"),
     Columns("counts", MARGINALS, ("s", "{}"),

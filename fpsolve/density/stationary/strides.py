@@ -11,8 +11,9 @@ from fpsolve._kernels.threads import threads_worth_their_wait
 from fpsolve.density.schemes.drift_kick import DriftKick
 from fpsolve.density.schemes.form import State
 from fpsolve.density.schemes.scheme import Scheme
+from fpsolve.evolution.richardson import weights_of
 
-__all__ = ["Evolution", "Strides"]
+__all__ = ["Stride", "Strides"]
 
 Array = NDArray[np.float64]
 
@@ -23,7 +24,7 @@ STRIDE = 1.0
 DIVISORS = (1, 2, 3)
 
 
-class Evolution:
+class Stride:
     """The density evolved over a stride, as a map for a Krylov solver.
 
     Parameters
@@ -69,7 +70,7 @@ class Strides:
 
     def __init__(self, scheme: DriftKick, ds: float, extrapolate: bool = True) -> None:
         self.extrapolate = extrapolate
-        self.evolutions = [Evolution(scheme, ds, j) for j in DIVISORS]
+        self.evolutions = [Stride(scheme, ds, j) for j in DIVISORS]
 
     @property
     def n_applications(self) -> int:
@@ -77,7 +78,7 @@ class Strides:
         return sum(one.n_applications for one in self.evolutions)
 
     @property
-    def longest(self) -> Evolution:
+    def longest(self) -> Stride:
         """The stride with ds."""
         return self.evolutions[0]
 
@@ -103,17 +104,8 @@ class Strides:
         return images[0] - self._combined(images, 0)
 
     def _combined(self, images: Sequence[Array], first: int) -> Array:
-        weights = extrapolation_weights(DIVISORS[first:])
+        weights = weights_of(DIVISORS[first:])
         total = np.zeros_like(images[0])
         for weight, image in zip(weights, images[first:], strict=True):
             total += weight * image
         return total
-
-
-def extrapolation_weights(divisors: Sequence[int]) -> list[float]:
-    """w_j with Σ w_j = 1 and Σ w_j j^{−2m} = 0 for m = 1, …: no such powers of ds."""
-    squares = [float(j) ** 2 for j in divisors]
-    return [
-        float(np.prod([one / (one - other) for other in squares if other != one]))
-        for one in squares
-    ]
