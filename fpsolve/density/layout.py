@@ -27,7 +27,7 @@ from fpsolve.grids.phase_space import PhaseSpaceGrid
 
 __all__ = ["SOLUTION", "is_saved"]
 
-_AXES = ("xi1", "xi2", "alpha")
+_AXES = PhaseSpaceGrid.axes
 
 
 class _Start(Part):
@@ -89,7 +89,7 @@ SOLUTION = Layout(
     Attribute("Conventions", values=lambda _: "CF-1.11"),
     Model(),
     SAVED,
-    OnGrid(PhaseSpaceGrid, _AXES, DENSITY),
+    OnGrid(PhaseSpaceGrid, DENSITY),
     Variable("entropy_floor", (), "value that H(p|p_S) tends to on this grid",
              kind=float),
     _Start(),

@@ -100,8 +100,8 @@ class OnGrid(Part):
     Attributes
     ----------
     grid : type
-        With `shape`, the centres of its axes by their names, `to_dict`, `from_dict`.
-    axes : tuple of str
+        With the names of its `axes`, their centres by these names, `shape`, `to_dict`
+        and `from_dict`.
     words : str
         Long name of the densities.
     field : str
@@ -111,7 +111,6 @@ class OnGrid(Part):
     """
 
     grid: Any
-    axes: tuple[str, ...]
     words: str
     field: str = "densities"
     over: tuple[str, ...] = ("s",)
@@ -121,12 +120,14 @@ class OnGrid(Part):
     def write(self, result: Any) -> Stored:
         """The grid, its centres, and the densities, which share their memory."""
         densities = np.asarray(getattr(result, self.field))
+        axes = self.grid.axes
         centres = {
-            name: (name, getattr(result.grid, name), labels(COORDINATES[name]))
-            for name in self.axes
-        }
+            name: (name, getattr(result.grid, name),
+                   labels(COORDINATES.get(name, name)))
+            for name in axes
+        }  # fmt: skip
         return {
-            "density": ((*self.over, *self.axes), densities, labels(self.words)),
+            "density": ((*self.over, *axes), densities, labels(self.words)),
             **centres,
             "grid": to_json(result.grid.to_dict()),
         }
@@ -138,15 +139,15 @@ class OnGrid(Part):
         return {"grid": grid, self.field: source.dataset["density"].values}
 
     def _check(self, dataset: xr.Dataset, grid: Any) -> None:
-        density = dataset["density"]
+        density, dims = dataset["density"], (*self.over, *grid.axes)
         expected = (*(dataset.sizes[name] for name in self.over), *grid.shape)
-        if density.dims != (*self.over, *self.axes) or density.shape != expected:
+        if density.dims != dims or density.shape != expected:
             parts = " and ".join(f"`{name}`" for name in (*self.over, "grid"))
             raise ValueError(
                 f"`density` must have the shape {expected} of {parts}, got "
                 f"{density.shape} over {', '.join(map(str, density.dims))}"
             )
-        for name in self.axes:
+        for name in grid.axes:
             centres = getattr(grid, name)
             if not np.allclose(dataset[name], centres, rtol=_SAME, atol=_SAME):
                 raise ValueError(

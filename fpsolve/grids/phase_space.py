@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -47,6 +47,8 @@ class PhaseSpaceGrid(CellGrid):
     TypeError
         If an argument is not a number, or a number of cells not an integer.
     """
+
+    axes: ClassVar[tuple[str, ...]] = ("xi1", "xi2", "alpha")
 
     half_width: float | tuple[float, float]
     shape: tuple[int, int, int]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -43,6 +43,8 @@ class PlaneGrid(CellGrid):
     TypeError
         If an argument is not a number, or a number of cells not an integer.
     """
+
+    axes: ClassVar[tuple[str, ...]] = ("xi1", "xi2")
 
     half_width: float | tuple[float, float]
     shape: tuple[int, int]

@@ -37,8 +37,7 @@ __all__ = ["PATHS"]
 
 Array = NDArray[np.float64]
 
-_AXES = ("xi1", "xi2", "alpha")
-_CELLS = tuple(f"cell_{axis}" for axis in _AXES)
+_CELLS = tuple(f"cell_{axis}" for axis in PhaseSpaceGrid.axes)
 # The parts of a state: name, its place in the array of states, long name.
 STATE = (
     ("xi", slice(0, 2), "deviation ξ"),
@@ -195,7 +194,7 @@ class _Counts(Part):
         outside = "number of paths outside of the box of cells"
         centres = {
             cell: (cell, getattr(grid, axis), labels(f"centre of the cell in {axis}"))
-            for axis, cell in zip(_AXES, _CELLS, strict=True)
+            for axis, cell in zip(grid.axes, _CELLS, strict=True)
         }
         return {
             **centres,

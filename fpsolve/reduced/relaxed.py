@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -28,11 +30,13 @@ class Relaxed(Evolution):
 
         Twice that of the grid: its error contains that of the step, from `errors` if
         there are any, and nothing of the cells. An implicit step of length h takes a
-        mode e^{−λs/2} by a factor of which the rate is short by the share λh/4
-        (backward_euler) or (λh)²/40 (sdirk2).
+        mode e^{−μs} by 1/(1 + μh), so that the fitted λ = 2 ln(1 + μh)/h is short by
+        the share (e^{λh/2} − 1)/(λh/2) − 1 (backward_euler), or by (λh)²/40 (sdirk2).
         """
         return super().entropy_rate(window)
 
     def _of_step(self, above: Array, window: tuple[float, float] | None) -> float:
         turn = fit_decay(self.series["s"], above, window).rate * self.ds
-        return turn / 4 if self.method == "backward_euler" else turn**2 / 40
+        if self.method == "backward_euler":
+            return math.expm1(turn / 2) / (turn / 2) - 1
+        return turn**2 / 40

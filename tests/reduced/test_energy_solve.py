@@ -209,6 +209,19 @@ def test_the_law_forgets_at_the_rate_of_its_family():
         assert -math.log(late[1] / late[0]) == pytest.approx(2 * rate, rel=2e-3)
 
 
+@pytest.mark.parametrize("method", ["backward_euler", "sdirk2"])
+@pytest.mark.parametrize("ds", [0.05, 0.25])
+def test_the_fitted_rate_is_twice_the_gap_of_the_grid_within_its_error(ds, method):
+    # Rates relative to A² = RATE·2, so that a step is ds of a unit.
+    grid = GRIDS["|G|"]
+    rates = np.linalg.eigvals(grid.generator(NOISE).toarray()).real
+    twice_the_gap = -2.0 * np.sort(rates)[-2]
+    unit = 1.0 / (2.0 * RATE)
+    run = QUADRATIC.solve(0.3, (0.0, 6 * unit), ds * unit, grid=grid, method=method)
+    found = run.entropy_rate()
+    assert abs(found.rate - twice_the_gap) < found.standard_error < 0.5 * twice_the_gap
+
+
 def test_noise_only_scales_the_arclength():
     slow, fast = (EnergyProcess(QuadraticPotential(), noise) for noise in (0.1, 1.0))
     runs = [

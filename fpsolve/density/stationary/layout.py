@@ -72,8 +72,7 @@ class _Moments(Part):
 STATIONARY = Layout(
     "Stationary density of the fibre lay-down equation",
     Model(),
-    OnGrid(PhaseSpaceGrid, ("xi1", "xi2", "alpha"),
-           "stationary density p(ξ₁, ξ₂, α)", "density", over=()),
+    OnGrid(PhaseSpaceGrid, "stationary density p(ξ₁, ξ₂, α)", "density", over=()),
     Variable("density_l1_error", (), "estimated L¹ error of p", "error", float),
     _Named("part_error", "part", "parts of that error", "errors"),
     _Named("splitting", "quantity", "what one run with ds adds", "splitting"),

@@ -19,14 +19,19 @@ WORDS = {
     "minimum": "smallest value of 𝒫",
     "density_l1_error": "estimated error of: L¹ norm of 𝒫",
 }
-_PLANE, _COMPONENT, _PAIR = ("xi1", "xi2"), ("s", "component"), ("component", "other")
+_COMPONENT, _PAIR = ("s", "component"), ("component", "other")
 
 SOLUTION = Layout(
     "hydrodynamic limit of fibre lay-down",
     Model("limit", owned=True),
     SAVED,
-    OnGrid(PlaneGrid, _PLANE, "plane density 𝒫(s, ξ₁, ξ₂) of the hydrodynamic limit"),
-    Variable("initial_density", _PLANE, "plane density 𝒫₀ of the start", optional=True),
+    OnGrid(PlaneGrid, "plane density 𝒫(s, ξ₁, ξ₂) of the hydrodynamic limit"),
+    Variable(
+        "initial_density",
+        PlaneGrid.axes,
+        "plane density 𝒫₀ of the start",
+        optional=True,
+    ),
     Recorded(words=lambda name: WORDS.get(name) or long_name(name)),
     Attribute("method"),
     STEP,
