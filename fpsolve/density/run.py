@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
@@ -17,15 +16,8 @@ from fpsolve.density.recorder import Recorder
 from fpsolve.density.schemes.dictionaries import describe_scheme
 from fpsolve.density.schemes.scheme import Scheme
 from fpsolve.density.solution import Solution
-from fpsolve.density.tolerances import Tolerances, check_laws
-from fpsolve.errors import (
-    DomainTooSmallError,
-    MassDriftError,
-    NegativeDensityError,
-    NonFiniteDensityError,
-    RunError,
-    RunInterrupted,
-)
+from fpsolve.density.tolerances import Tolerances, check_finite, check_record
+from fpsolve.errors import RunError, RunInterrupted
 from fpsolve.evolution.call import Call
 from fpsolve.evolution.schedule import Schedule
 from fpsolve.evolution.series import Series
@@ -141,38 +133,12 @@ class Run:
         s = self.schedule.s(step)
         p = self.scheme.density(self.state)
         told = {"mass_correction": self.state.correction, **self.state.report}
-        self._check_finite(p, s)
+        check_finite(p, s)
         values = self.recorder.record(p, s, told)
         if step in self.saves:
             self.keeper.save(p)
-        self._check(values)
-
-    def _check_finite(self, p: Array, s: float) -> None:
-        # A sum is finite unless a cell is not, or the values are about to overflow.
-        if not math.isfinite(float(p.sum())):
-            bad = np.argwhere(~np.isfinite(p))
-            index = bad[0] if len(bad) else np.unravel_index(np.argmax(p), p.shape)
-            raise NonFiniteDensityError(s, tuple(int(i) for i in index))
-
-    def _check(self, values: dict[str, float]) -> None:
-        s = values["s"]
-        drift = values["mass"] / self.recorder.first["mass"] - 1.0
-        allowed = self.tolerances
-        if not abs(drift) <= allowed.mass:
-            raise MassDriftError(s, drift, allowed.mass)
-        if not abs(self.state.correction) <= self.scheme.correction_limit:
-            raise MassDriftError(s, self.state.correction, self.scheme.correction_limit)
-        negative = values["negative_mass"] / values["mass"]
-        if not negative <= allowed.negative:
-            raise NegativeDensityError(s, negative, allowed.negative)
-        if not values["boundary_mass"] <= allowed.boundary:
-            raise DomainTooSmallError(
-                values["boundary_mass"],
-                self.scheme.grid.half_width,
-                s,
-                allowed.boundary,
-            )
-        check_laws(values, allowed)
+        mass = self.recorder.first["mass"]
+        check_record(values, mass, self.scheme, self.state, self.tolerances)
 
     def _partial(
         self, status: str, message: str, fallback: Solution | None

@@ -6,10 +6,22 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from fpsolve._support.checks import check_tolerance
-from fpsolve.errors import CirculationError, EntropyRiseError
+import numpy as np
+from numpy.typing import NDArray
 
-__all__ = ["Tolerances", "check_laws"]
+from fpsolve._support.checks import check_tolerance
+from fpsolve.density.schemes.form import State
+from fpsolve.density.schemes.scheme import Scheme
+from fpsolve.errors import (
+    CirculationError,
+    DomainTooSmallError,
+    EntropyRiseError,
+    MassDriftError,
+    NegativeDensityError,
+    NonFiniteDensityError,
+)
+
+__all__ = ["Tolerances", "check_finite", "check_record"]
 
 
 @dataclass(frozen=True)
@@ -27,7 +39,50 @@ class Tolerances:
             check_tolerance(f"{name}_tolerance", value)
 
 
-def check_laws(values: Mapping[str, float], allowed: Tolerances) -> None:
+def check_finite(p: NDArray[np.float64], s: float) -> None:
+    """Raise unless every value of a density is a number."""
+    # A sum is finite unless a cell is not, or the values are about to overflow.
+    if not math.isfinite(float(p.sum())):
+        bad = np.argwhere(~np.isfinite(p))
+        index = bad[0] if len(bad) else np.unravel_index(np.argmax(p), p.shape)
+        raise NonFiniteDensityError(s, tuple(int(i) for i in index))
+
+
+def check_record(
+    values: Mapping[str, float],
+    mass: float,
+    scheme: Scheme,
+    state: State,
+    allowed: Tolerances,
+) -> None:
+    """Raise if a record tells that a density is none, or a scheme repaired too much.
+
+    Parameters
+    ----------
+    values : mapping
+        What a `Recorder` found.
+    mass : float
+        At the start.
+    scheme : Scheme
+    state : State
+        Of the scheme, with what its last step corrected.
+    allowed : Tolerances
+    """
+    s, drift = values["s"], values["mass"] / mass - 1.0
+    if not abs(drift) <= allowed.mass:
+        raise MassDriftError(s, drift, allowed.mass)
+    if not abs(state.correction) <= scheme.correction_limit:
+        raise MassDriftError(s, state.correction, scheme.correction_limit)
+    negative = values["negative_mass"] / values["mass"]
+    if not negative <= allowed.negative:
+        raise NegativeDensityError(s, negative, allowed.negative)
+    boundary = values["boundary_mass"]
+    if not boundary <= allowed.boundary:
+        raise DomainTooSmallError(boundary, scheme.grid.half_width, s, allowed.boundary)
+    _check_laws(values, allowed)
+
+
+def _check_laws(values: Mapping[str, float], allowed: Tolerances) -> None:
     """Raise if a record breaks what holds on a belt at rest; see `Recorder`."""
     rise = values.get("entropy_rise", 0.0)
     # An infinite tolerance asks not to be told, not even of NaN.

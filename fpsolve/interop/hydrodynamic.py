@@ -5,23 +5,24 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
 from pde.solvers import SolverBase
 
-from fpsolve._support.checks import check_positive
+from fpsolve._support.checks import check_one_of, check_positive
 from fpsolve.errors import DomainTooSmallError
 from fpsolve.grids import diagnostics
 from fpsolve.grids.plane import PlaneGrid
 from fpsolve.interop.fields import from_pde_field
 from fpsolve.interop.pypde import HydrodynamicPDE, expect_grid
-from fpsolve.interop.solvers import check_equation, checked_step, steps_between
+from fpsolve.interop.solvers import (
+    check_equation,
+    checked_step,
+    described,
+    steps_between,
+)
 from fpsolve.reduced.hydrodynamic.limit import HydrodynamicLimit
 from fpsolve.reduced.implicit import METHODS, Method
 
 __all__ = ["ScharfetterGummelSolver"]
-
-Array = NDArray[np.float64]
 
 
 class ScharfetterGummelSolver(SolverBase):  # type: ignore[misc]
@@ -68,9 +69,7 @@ class ScharfetterGummelSolver(SolverBase):  # type: ignore[misc]
         boundary_tolerance: float = 1e-3,
     ) -> None:
         check_equation(pde, HydrodynamicPDE, self.name)
-        if method not in METHODS:
-            known = ", ".join(repr(name) for name in METHODS)
-            raise ValueError(f"`method` must be one of {known}, got {method!r}.")
+        check_one_of("method", method, METHODS)
         super().__init__(pde, backend="numpy")
         self.method = method
         self.tolerance = check_positive("boundary_tolerance", boundary_tolerance)
@@ -83,15 +82,7 @@ class ScharfetterGummelSolver(SolverBase):  # type: ignore[misc]
         grid = expect_grid(from_pde_field(state)[1], PlaneGrid, "FokkerPlanckPDE")
         generator = HydrodynamicLimit(self.pde.model).generator(grid)
         take_step: Method = METHODS[self.method](generator, dt)
-        self.info.update(
-            dt=dt,
-            steps=0,
-            dt_adaptive=False,
-            stochastic=False,
-            backend="fpsolve",
-            order=take_step.order,
-            options={"method": self.method},
-        )
+        self.info |= described(dt, take_step.order, {"method": self.method})
 
         def advance(field: Any, t_start: float, t_end: float) -> float:
             n_steps = steps_between(t_start, t_end, dt)
@@ -101,15 +92,9 @@ class ScharfetterGummelSolver(SolverBase):  # type: ignore[misc]
                 density = take_step(density)
             field.data[...] = density.reshape(grid.shape)
             self.info["steps"] += n_steps
-            t = t_start + n_steps * dt
-            check_box(field.data, grid, t, self.tolerance)
+            t, share = t_start + n_steps * dt, diagnostics.ring_share(field.data)
+            if not share <= self.tolerance:
+                raise DomainTooSmallError(share, grid.half_width, t, self.tolerance)
             return t
 
         return advance
-
-
-def check_box(density: Array, grid: PlaneGrid, s: float, tolerance: float) -> None:
-    """Raise if more than a share of the mass lies in the outermost cells."""
-    share = diagnostics.ring_share(density)
-    if not share <= tolerance:
-        raise DomainTooSmallError(share, grid.half_width, s, tolerance)

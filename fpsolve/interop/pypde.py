@@ -9,6 +9,7 @@ import numpy as np
 import pde
 from numpy.typing import NDArray
 
+from fpsolve._support.checks import check_kind
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.grids.plane import PlaneGrid
 from fpsolve.interop.differences import (
@@ -35,11 +36,8 @@ class _LayDownPDE(pde.PDEBase):  # type: ignore[misc]
     """What both equations share: a model, a rate on a grid, its two back ends."""
 
     def __init__(self, model: LayDownModel) -> None:
-        if not isinstance(model, LayDownModel):
-            raise TypeError(
-                f"`model` must be a LayDownModel, got {model!r}; it holds potential, "
-                "noise and curve."
-            )
+        remedy = "it holds potential, noise and curve"
+        check_kind("model", model, LayDownModel, remedy)
         super().__init__()
         self.model = model
         self._last: tuple[Any, Rate] | None = None

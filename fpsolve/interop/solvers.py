@@ -13,17 +13,9 @@ from pde.solvers import SolverBase
 from fpsolve._support.checks import check_positive
 from fpsolve.density.recorder import Recorder
 from fpsolve.density.schemes.drift_kick import DriftKick
-from fpsolve.density.schemes.form import State
 from fpsolve.density.schemes.scheme import Scheme, checked_start
 from fpsolve.density.schemes.semi_lagrangian import SemiLagrangian
-from fpsolve.density.tolerances import Tolerances, check_laws
-from fpsolve.errors import (
-    DomainTooSmallError,
-    MassDriftError,
-    NegativeDensityError,
-    NonFiniteDensityError,
-)
-from fpsolve.grids import diagnostics
+from fpsolve.density.tolerances import Tolerances, check_finite, check_record
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.interop.fields import from_pde_field
 from fpsolve.interop.pypde import FokkerPlanckPDE, expect_grid
@@ -98,15 +90,7 @@ class SchemeSolverBase(SolverBase):  # type: ignore[misc]
         dt = checked_step(dt, self.name, "fpsolve.suggest_step proposes one")
         grid = expect_grid(from_pde_field(state)[1], PhaseSpaceGrid, "HydrodynamicPDE")
         scheme = type(self).scheme(self.pde.model, grid, **self.options)
-        self.info.update(
-            dt=dt,
-            steps=0,
-            dt_adaptive=False,
-            stochastic=False,
-            backend="fpsolve",
-            order=scheme.order,
-            options=dict(scheme.options),
-        )
+        self.info |= described(dt, scheme.order, dict(scheme.options))
         return Stepper(scheme, dt, self.tolerances, self.info)
 
 
@@ -160,15 +144,17 @@ class Stepper:
         p0 = checked_start(self.scheme, np.array(field.data, order="C"))
         self.state = self.scheme.start(p0)
         self.origin, self.n_steps = t_start, 0
-        self.mass = float(p0.sum())
         self.recorder = Recorder(self.scheme.model, self.scheme.grid)
         self.recorder.record(p0, t_start)
 
     def _show(self, field: Any) -> None:
         p = self.scheme.density(self.state)
-        check_density(p, self.reached, self.mass, self.scheme, self.tolerances)
-        check_correction(self.state, self.reached, self.scheme)
-        check_laws(self.recorder.record(p, self.reached), self.tolerances)
+        check_finite(p, self.reached)
+        values, mass = (
+            self.recorder.record(p, self.reached),
+            self.recorder.first["mass"],
+        )
+        check_record(values, mass, self.scheme, self.state, self.tolerances)
         del self.recorder.numbers[:]
         self.info |= {"mass_correction": self.state.correction, **self.state.report}
         field.data[...] = p
@@ -192,35 +178,12 @@ def checked_step(dt: Any, name: str, remedy: str) -> float:
     return check_positive("dt", dt)
 
 
+def described(dt: float, order: int, options: dict[str, Any]) -> dict[str, Any]:
+    """What a solver says of itself."""
+    fixed = {"steps": 0, "dt_adaptive": False, "stochastic": False}
+    return {"dt": dt, **fixed, "backend": "fpsolve", "order": order, "options": options}
+
+
 def steps_between(t_start: float, t_end: float, dt: float) -> int:
     """The whole number of steps, at least one, that comes closest to a span."""
     return max(1, round((t_end - t_start) / dt))
-
-
-def check_density(
-    p: Array, s: float, start: float, scheme: Scheme, tolerances: Tolerances
-) -> None:
-    """Raise what `fpsolve.solve` raises for a density that is no longer one.
-
-    `start` is the sum over the cells at the start.
-    """
-    grid, total = scheme.grid, float(p.sum())
-    if not math.isfinite(total):
-        bad = np.argwhere(~np.isfinite(p))
-        index = bad[0] if len(bad) else np.unravel_index(np.argmax(p), p.shape)
-        raise NonFiniteDensityError(s, tuple(int(i) for i in index))
-    drift = total / start - 1.0
-    if not abs(drift) <= tolerances.mass:
-        raise MassDriftError(s, drift, tolerances.mass)
-    negative = diagnostics.negative_mass(p, grid) / (total * grid.cell_volume)
-    if not negative <= tolerances.negative:
-        raise NegativeDensityError(s, negative, tolerances.negative)
-    boundary = diagnostics.boundary_mass(p, grid)
-    if not boundary <= tolerances.boundary:
-        raise DomainTooSmallError(boundary, grid.half_width, s, tolerances.boundary)
-
-
-def check_correction(state: State, s: float, scheme: Scheme) -> None:
-    """Raise if the scheme had to restore more mass than a good step loses."""
-    if not abs(state.correction) <= scheme.correction_limit:
-        raise MassDriftError(s, state.correction, scheme.correction_limit)

@@ -8,9 +8,10 @@ import pytest
 from problems import asymmetric_start
 
 from fpsolve import diagnostics
+from fpsolve.density.recorder import Recorder
 from fpsolve.density.schemes import drift_kick, semi_lagrangian
 from fpsolve.density.solve import solve
-from fpsolve.density.tolerances import Tolerances
+from fpsolve.density.tolerances import Tolerances, check_finite, check_record
 from fpsolve.errors import (
     DomainTooSmallError,
     MassDriftError,
@@ -20,7 +21,6 @@ from fpsolve.errors import (
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.grids.plane import PlaneGrid
 from fpsolve.interop import FokkerPlanckPDE, to_pde_field
-from fpsolve.interop.solvers import check_correction, check_density
 from fpsolve.model.curves import RotatingNozzle
 from fpsolve.model.laydown import LayDownModel
 from fpsolve.model.potentials import QuadraticPotential
@@ -194,9 +194,13 @@ class TestChecks:
     SCHEME = drift_kick(LayDownModel(QuadraticPotential(), 1.0), GRID)
     TOLERANCES = Tolerances(1e-10, 1e-3, 0.2)
 
-    def check(self, p, start=None):
-        start = float(p.sum()) if start is None else start
-        check_density(p, 1.5, start, self.SCHEME, self.TOLERANCES)
+    def check(self, p, mass=None, correction=0.0):
+        check_finite(p, 1.5)
+        state = self.SCHEME.start(p)
+        state.correction = correction
+        values = Recorder(self.SCHEME.model, GRID).record(p, 1.5)
+        mass = values["mass"] if mass is None else mass
+        check_record(values, mass, self.SCHEME, state, self.TOLERANCES)
 
     def test_a_density_passes(self, p0):
         self.check(p0)
@@ -209,7 +213,7 @@ class TestChecks:
 
     def test_mass_that_drifts(self, p0):
         with pytest.raises(MassDriftError) as caught:
-            self.check(p0, start=2.0 * float(p0.sum()))
+            self.check(p0, mass=2.0 * diagnostics.mass(p0, GRID))
         assert caught.value.drift == pytest.approx(-0.5)
 
     def test_negative_mass(self, p0):
@@ -225,10 +229,8 @@ class TestChecks:
         assert caught.value.half_width == GRID.half_width
 
     def test_a_correction_too_large(self, p0):
-        state = self.SCHEME.start(p0)
-        state.correction = 0.5
         with pytest.raises(MassDriftError, match=r"drift 0.5 exceeds tolerance 0.02"):
-            check_correction(state, 1.5, self.SCHEME)
+            self.check(p0, correction=0.5)
 
     def test_a_box_too_small_stops_the_run_of_py_pde(self, model):
         grid = PhaseSpaceGrid(1.5, (8, 8, 8))
