@@ -77,7 +77,7 @@ def undrawn(monkeypatch):
         path.touch()
         return path
 
-    monkeypatch.setattr("fpsolve.plotting.files._write", write)
+    monkeypatch.setattr("fpsolve.plotting.files.write_figure", write)
 
 
 @pytest.fixture

@@ -24,10 +24,7 @@ BeltSpeed = Annotated[
 Memory = Annotated[
     float | None,
     typer.Option(
-        "--memory-limit",
-        metavar="MIB",
-        help="Memory for the largest basis, in MiB.",
-        show_default="256",
+        metavar="MIB", help="Memory for the largest basis, in MiB.", show_default="256"
     ),
 ]
 WorkLimit = Annotated[
@@ -63,7 +60,7 @@ def spectrum(
         from fpsolve._support.checks import check_positive
         from fpsolve.model.curves.belts import FixedBelt, MovingBelt
         from fpsolve.model.laydown import LayDownModel
-        from fpsolve.plotting.rates import plot_spectrum
+        from fpsolve.plotting.spectrum import plot_spectrum
         from fpsolve.spectral.eigen.spectrum import spectrum as compute
 
         curve = MovingBelt(belt_speed) if belt_speed else FixedBelt()

@@ -10,6 +10,8 @@ from .energy import plot_orbits as plot_orbits
 from .ensembles import plot_ensemble as plot_ensemble
 from .entropy import plot_entropy as plot_entropy
 from .ergodicity import plot_ergodic_averages as plot_ergodic_averages
+from .fibres import plot_fibre as plot_fibre
+from .fibres import plot_nozzles as plot_nozzles
 from .files import save_figures as save_figures
 from .hydrodynamic import plot_hydrodynamic as plot_hydrodynamic
 from .limits import plot_large_noise as plot_large_noise
@@ -20,13 +22,11 @@ from .overview import plot_overview as plot_overview
 from .rates import plot_asymptotic_variance as plot_asymptotic_variance
 from .rates import plot_inverse_decay_rate as plot_inverse_decay_rate
 from .rates import plot_rates as plot_rates
-from .rates import plot_spectrum as plot_spectrum
 from .series import plot_energy_paths as plot_energy_paths
 from .series import plot_hydrodynamic_paths as plot_hydrodynamic_paths
 from .series import plot_spectral as plot_spectral
 from .small_noise import plot_small_noise as plot_small_noise
 from .small_noise import plot_small_noise_spectrum as plot_small_noise_spectrum
+from .spectrum import plot_spectrum as plot_spectrum
 from .stationary import plot_steady_state as plot_steady_state
-from .trajectories import plot_fibre as plot_fibre
-from .trajectories import plot_nozzles as plot_nozzles
 from .trajectories import plot_trajectories as plot_trajectories

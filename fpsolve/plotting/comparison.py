@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fpsolve._support.checks import check_kind, told_apart
 from fpsolve.evolution.schedule import index_of
-from fpsolve.plotting.style import COLOURS, PAGE, new_figure, paper_style, parameters
+from fpsolve.plotting.angle import show_turn
+from fpsolve.plotting.selection import evenly
+from fpsolve.plotting.style import COLOURS, PAGE, drawing, parameters
 from fpsolve.studies.agreement.check import CrossCheck
 
 if TYPE_CHECKING:
@@ -47,10 +49,6 @@ def plot_cross_check(check: CrossCheck, at: Iterable[float] | None = None) -> Fi
     at : iterable of float, optional
         Arclengths to show; by default all, at most four of them.
 
-    Returns
-    -------
-    matplotlib.figure.Figure
-
     Raises
     ------
     ValueError
@@ -58,15 +56,12 @@ def plot_cross_check(check: CrossCheck, at: Iterable[float] | None = None) -> Fi
     """
     check_kind("check", check, CrossCheck, "it is what `cross_check` returns")
     rows = _rows(check, at)
-    with paper_style():
-        figure = new_figure(PAGE, _MARGINS + len(rows) * (_ROW + _STRIP))
+    height = _MARGINS + len(rows) * (_ROW + _STRIP)
+    with drawing(PAGE, height, _title(check)) as figure:
         panels = figure.subplots(
-            2 * len(rows),
-            3,
-            squeeze=False,
-            sharex="col",
+            2 * len(rows), 3, squeeze=False, sharex="col",
             height_ratios=[_ROW, _STRIP] * len(rows),
-        )
+        )  # fmt: skip
         for place, row in enumerate(rows):
             for axes, strip, which in zip(
                 panels[2 * place], panels[2 * place + 1], _LABELS, strict=True
@@ -81,16 +76,13 @@ def plot_cross_check(check: CrossCheck, at: Iterable[float] | None = None) -> Fi
         panels[0, 0].legend(
             loc="upper left", borderaxespad=0.1, handlelength=1.2, fontsize=7
         )
-        figure.suptitle(_title(check))
     return figure
 
 
 def _rows(check: CrossCheck, at: Iterable[float] | None) -> list[int]:
     """Numbers of the arclengths to show."""
     if at is None:
-        n_rows = min(len(check.s), _MOST_ROWS)
-        steps = np.linspace(0, len(check.s) - 1, n_rows)
-        return [int(step) for step in steps.round()]
+        return evenly(len(check.s), _MOST_ROWS)
     return [_row_of(check, float(s)) for s in at]
 
 
@@ -114,28 +106,17 @@ def _draw_marginal(axes: Axes, check: CrossCheck, row: int, which: str) -> None:
         places, share / share.sum() / width, color=COLOURS["blue"], label="density"
     )
     axes.errorbar(
-        places,
-        counts / n_inside / width,
-        yerr=np.sqrt(counts) / n_inside / width,
-        fmt=".",
-        markersize=2.6,
-        elinewidth=0.6,
-        color=COLOURS["vermilion"],
+        places, counts / n_inside / width, np.sqrt(counts) / n_inside / width,
+        fmt=".", markersize=2.6, elinewidth=0.6, color=COLOURS["vermilion"],
         label="paths",
-    )
+    )  # fmt: skip
     axes.set_ylim(bottom=0.0)
     axes.set_ylim(top=1.22 * axes.get_ylim()[1])
     test = check.test(f"marginal {which}", float(check.s[row]))
     axes.text(
-        0.98,
-        0.96,
-        _p_value(test.p_value),
-        transform=axes.transAxes,
-        ha="right",
-        va="top",
-        fontsize=7,
-        color=COLOURS["black"] if test.agrees else COLOURS["vermilion"],
-    )
+        0.98, 0.96, _p_value(test.p_value), transform=axes.transAxes, ha="right",
+        va="top", fontsize=7, color=COLOURS["black" if test.agrees else "vermilion"],
+    )  # fmt: skip
 
 
 def _draw_scores(axes: Axes, check: CrossCheck, row: int, which: str) -> None:
@@ -159,14 +140,9 @@ def _scores(check: CrossCheck, row: int, which: str) -> Array:
 
 def _limit(panels: NDArray[Any], check: CrossCheck, rows: list[int]) -> None:
     """Show where the probability is, and all strips on one scale."""
-    for column, which in enumerate(_LABELS):
-        low, high = _window(check, rows, which)
-        panels[0, column].set_xlim(low, high)
-    alpha = panels[0, -1]
-    alpha.set_xticks(
-        [0, np.pi / 2, np.pi, 3 * np.pi / 2, 2 * np.pi],
-        ["0", r"$\pi/2$", r"$\pi$", r"$3\pi/2$", r"$2\pi$"],
-    )
+    for axes, which in zip(panels[0], ("xi1", "xi2"), strict=False):
+        axes.set_xlim(_window(check, rows, which))
+    show_turn(panels[0, -1])
     scores = [_scores(check, row, which) for row in rows for which in _LABELS]
     largest = max(float(np.nanmax(np.abs(score))) for score in scores)
     height = max(_LEAST_SCORE, 1.1 * largest)
@@ -177,8 +153,6 @@ def _limit(panels: NDArray[Any], check: CrossCheck, rows: list[int]) -> None:
 
 def _window(check: CrossCheck, rows: list[int], which: str) -> tuple[float, float]:
     places, width = _cells(check, which)
-    if which == "alpha":
-        return 0.0, 2 * np.pi
     share = check.probabilities[which][rows].max(axis=0)
     inside = np.flatnonzero(share > _OUTSIDE * share.sum())
     return float(places[inside[0]] - width), float(places[inside[-1]] + width)
@@ -195,8 +169,6 @@ def _p_value(p_value: float) -> str:
 
 
 def _title(check: CrossCheck) -> str:
-    # What `parameters` reads of a solution is its model, which a check has too.
-    title = parameters(cast(Any, check))
     failed, total = len(check.failed), len(check.tests)
     outcome = (
         f"all {total} tests passed"
@@ -205,6 +177,6 @@ def _title(check: CrossCheck) -> str:
     )
     thousands = f"{check.n_paths:,}".replace(",", r"\,")
     return (
-        f"{title}\n${thousands}$ paths, {outcome} "
+        f"{parameters(check)}\n${thousands}$ paths, {outcome} "
         f"(false alarm: at most {check.false_alarm:g})"
     )

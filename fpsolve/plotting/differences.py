@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from functools import reduce
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fpsolve._support.checks import check_kind
-from fpsolve.plotting.style import COLOURS, PAGE, new_figure, paper_style
+from fpsolve.plotting.logarithmic import noise_ticks
+from fpsolve.plotting.selection import evenly
+from fpsolve.plotting.style import COLOURS, PAGE, drawing
 from fpsolve.results.compare.comparison import Comparison, verdict
 from fpsolve.results.compare.differences import FLOOR
 
@@ -35,8 +38,8 @@ _FIRST = ("relative_entropy", "mean_xi1", "variance_xi1", "mass")
 # Tables of all kinds of things, and what is shown in panels of its own.
 _NO_LINES = ("density", "cell_mass", "states", "counts", "xi", "tau", "turns", "alpha",
              "moment_sums")  # fmt: skip
-_MOST_LINES, _MOST_ARCLENGTHS = 5, 4
-_HEIGHT, _DIFFERENCES = 2.7, "RdBu_r"
+_MOST_LINES, _MOST_ARCLENGTHS, _FEW = 5, 4, 10
+_HEIGHT, _DIFFERENCES = 3.0, "RdBu_r"
 _LINES = ("blue", "vermilion", "green", "purple", "orange", "sky")
 
 
@@ -58,27 +61,17 @@ def plot_comparison(comparison: Comparison) -> Figure:
         If it is something else.
     """
     check_kind("comparison", comparison, Comparison, "it is what `compare` returns")
-    dataset = comparison.dataset
-    with paper_style():
-        panels = [_draw_map, _draw_profiles] if _has_plane(dataset) else []
-        if not panels and "density" in dataset:
-            panels = [_draw_profiles]
-        panels = [*panels, _draw_lines]
-        figure = new_figure(PAGE, _HEIGHT + 0.3)
+    dataset, (a, b) = comparison.dataset, comparison.names
+    known = set(dataset["density"].dims) if "density" in dataset else set()
+    panels = [_draw_map] if {"xi1", "xi2"} <= known else []
+    panels += [_draw_profiles] if known else []
+    panels += [_draw_lines]
+    wrapped = verdict(comparison).replace("; ", "\n")
+    with drawing(PAGE, _HEIGHT, f"A = {a}, B = {b}\n{wrapped}") as figure:
         columns = figure.subplots(1, len(panels), squeeze=False)[0]
         for axes, draw in zip(columns, panels, strict=True):
             draw(axes, dataset)
-        a, b = comparison.names
-        figure.suptitle(f"A = {a}, B = {b}\n{_wrapped(verdict(comparison))}")
     return figure
-
-
-def _wrapped(text: str) -> str:
-    return text.replace("; ", "\n")
-
-
-def _has_plane(dataset: xr.Dataset) -> bool:
-    return "density" in dataset and {"xi1", "xi2"} <= set(dataset["density"].dims)
 
 
 def _draw_map(axes: Axes, dataset: xr.Dataset) -> None:
@@ -112,15 +105,11 @@ def _draw_profiles(axes: Axes, dataset: xr.Dataset) -> None:
     """Differences of the marginals in α, or of densities of one variable, at some s."""
     density = dataset["density"]
     along = next(name for name in ("alpha", "g", "xi1") if name in density.dims)
-    n = density.sizes["s"]
-    for colour, row in zip(
-        _LINES, np.linspace(0, n - 1, min(n, _MOST_ARCLENGTHS)).round(), strict=False
-    ):
-        one = density.isel(s=int(row))
-        for axis in ("xi1", "xi2"):
-            if axis != along:
-                one = _integrated(one, axis)
-        label = f"$s = {float(density['s'][int(row)]):g}$"
+    others = [axis for axis in ("xi1", "xi2") if axis != along]
+    rows = evenly(density.sizes["s"], _MOST_ARCLENGTHS)
+    for colour, row in zip(_LINES, rows, strict=False):
+        one = reduce(_integrated, others, density.isel(s=row))
+        label = f"$s = {float(density['s'][row]):g}$"
         axes.plot(one[along], one, color=COLOURS[colour], label=label)
     axes.axhline(0.0, color="0.6", linewidth=0.6, zorder=0)
     axes.ticklabel_format(axis="y", scilimits=(-2, 2))
@@ -137,33 +126,21 @@ def _draw_lines(axes: Axes, dataset: xr.Dataset) -> None:
         return
     for colour, name in zip(_LINES, chosen, strict=False):
         x, apart = _largest(dataset, name, along)
-        axes.plot(x, apart, _marks(x), color=COLOURS[colour], label=_label(name))
+        marks, label = ".-" if len(x) < 30 else "-", name.replace("_", " ")
+        axes.plot(x, apart, marks, color=COLOURS[colour], label=label)
         if f"{name}_error" in dataset:
             x, error = _largest(dataset, f"{name}_error", along)
             axes.plot(x, error, "--", color=COLOURS[colour], linewidth=0.9)
     axes.set_yscale("log")
     if along == "noise":
-        _mark_noises(axes, dataset["noise"].to_numpy())
+        axes.set_xscale("log")
+        # If they are few, the noises themselves are the ticks.
+        if dataset.sizes["noise"] < _FEW:
+            noise_ticks(axes, dataset["noise"].to_numpy())
     errors = any(f"{name}_error" in dataset for name in chosen)
     title = "|B − A|, dashed: errors" if errors else "|B − A|"
     axes.set(xlabel=_AXES[along], title=title)
     axes.legend(fontsize=7, loc="best")
-
-
-def _mark_noises(axes: Axes, noises: Array) -> None:
-    """A logarithmic axis with the noises themselves as ticks, if they are few."""
-    axes.set_xscale("log")
-    if len(noises) < 10:
-        axes.set_xticks(noises, [f"{noise:g}" for noise in noises])
-        axes.set_xticks([], minor=True)
-
-
-def _marks(x: Array) -> str:
-    return ".-" if len(x) < 30 else "-"
-
-
-def _label(name: str) -> str:
-    return name.replace("_", " ")
 
 
 def _lines(dataset: xr.Dataset) -> tuple[str, list[str]]:

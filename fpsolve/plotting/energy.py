@@ -6,22 +6,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fpsolve.plotting.selection import check_energy_solution, check_process
-from fpsolve.plotting.style import (
-    COLOURS,
-    DENSITY_MAP,
-    PAGE,
-    _formula,
-    new_figure,
-    paper_style,
-)
+from fpsolve._support.checks import check_kind
+from fpsolve.plotting.selection import evenly
+from fpsolve.plotting.style import COLOURS, DENSITY_MAP, PAGE, drawing, formula
+from fpsolve.reduced.energy.process import EnergyProcess
+from fpsolve.reduced.energy.solution import EnergySolution
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-
-    from fpsolve.reduced.energy.process import EnergyProcess
-    from fpsolve.reduced.energy.solution import EnergySolution
 
 __all__ = [
     "plot_energy_coefficients",
@@ -50,21 +43,15 @@ def plot_orbits(process: EnergyProcess) -> Figure:
     ----------
     process : EnergyProcess
 
-    Returns
-    -------
-    matplotlib.figure.Figure
-
     References
     ----------
     [KMW09]_, figure 6.
     """
-    check_process(process)
-    with paper_style():
-        figure = new_figure(PAGE, 3.5)
+    _check(process)
+    with drawing(PAGE, 3.5, _title(process, noise=False)) as figure:
         left, right = figure.subplots(1, 2, width_ratios=(1.15, 1.0))
         _draw_orbits(figure, left, process)
         _draw_fibres(right, process)
-        figure.suptitle(_title(process, noise=False))
     return figure
 
 
@@ -74,16 +61,10 @@ def plot_energy_coefficients(process: EnergyProcess) -> Figure:
     Parameters
     ----------
     process : EnergyProcess
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
-    check_process(process)
-    # A sequence that crowds at both ends, where the curves are steep.
-    g = process.g_max * np.sin(np.linspace(0, np.pi / 2, 301)) ** 2
-    with paper_style():
-        figure = new_figure(PAGE, 2.5)
+    _check(process)
+    g = _energies(process)
+    with drawing(PAGE, 2.5, _title(process)) as figure:
         period, variance, density = figure.subplots(1, 3)
         inside = g >= _LOWEST * process.g_max
         period.plot(g[inside], process.period(g[inside]), color=COLOURS["blue"])
@@ -95,15 +76,12 @@ def plot_energy_coefficients(process: EnergyProcess) -> Figure:
                       label=r"$\sigma^2(g)$")  # fmt: skip
         variance.set_ylabel(r"variance per unit of $s$")
         variance.legend(loc="upper right")
-        density.plot(
-            g[inside], process.stationary_density(g[inside]), color=COLOURS["green"]
-        )
+        law = process.stationary_density(g[inside])
+        density.plot(g[inside], law, color=COLOURS["green"])
         density.set_ylabel(r"stationary density of $|G|$")
         for axes in (period, variance, density):
-            axes.set_xlabel("energy $g$")
-            axes.set_xlim(0, 1.02 * process.g_max)
+            axes.set(xlabel="energy $g$", xlim=(0, 1.02 * process.g_max))
             axes.set_ylim(bottom=0)
-        figure.suptitle(_title(process))
     return figure
 
 
@@ -115,18 +93,12 @@ def plot_energy_law(solution: EnergySolution) -> Figure:
     Parameters
     ----------
     solution : EnergySolution
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
-    check_energy_solution(solution)
-    with paper_style():
-        figure = new_figure(PAGE, 3.0)
+    check_kind("solution", solution, EnergySolution, "see EnergyProcess.solve")
+    with drawing(PAGE, 3.0, _title(solution.process)) as figure:
         law, entropy = figure.subplots(1, 2, width_ratios=(1.6, 1.0))
         _draw_law(law, solution)
         _draw_entropy(entropy, solution)
-        figure.suptitle(_title(solution.process))
     return figure
 
 
@@ -138,30 +110,33 @@ def plot_energy_eigenfunctions(process: EnergyProcess, n: int = 4) -> Figure:
     process : EnergyProcess
     n : int
         How many of each family, at most six.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
-    check_process(process)
+    _check(process)
     if not 1 <= n <= len(_SEQUENCE):
         raise ValueError(f"`n` must be from 1 to {len(_SEQUENCE)}, got {n}.")
-    g = process.g_max * np.sin(np.linspace(0, np.pi / 2, 301)) ** 2
-    with paper_style():
-        figure = new_figure(PAGE, 2.9)
+    g = _energies(process)
+    with drawing(PAGE, 2.9, _title(process)) as figure:
         panels = figure.subplots(1, 2, sharey=True)
         for axes, family in zip(panels, ("even", "odd"), strict=True):
             _draw_family(axes, process.spectrum(n, family), g)
         panels[0].set_ylabel("eigenfunction $u(g)$")
-        figure.suptitle(_title(process))
     return figure
+
+
+def _check(process: Any) -> None:
+    check_kind("process", process, EnergyProcess, "EnergyProcess(potential, noise)")
+
+
+def _energies(process: EnergyProcess) -> np.ndarray:
+    """A sequence that crowds at both ends, where the curves are steep."""
+    crowded: np.ndarray = np.sin(np.linspace(0, np.pi / 2, 301)) ** 2
+    return process.g_max * crowded
 
 
 def _title(process: EnergyProcess | None, noise: bool = True) -> str:
     if process is None:
         return r"$B$ from the user's own functions"
-    potential = process.potential
-    title = f"$B =$ {_formula(potential.latex, potential.formula)}"
+    title = f"$B =$ {formula(process.potential)}"
     title += rf",  $g_{{\max}} = {process.g_max:.4g}$"
     return rf"{title},  $A = {process.noise:g}$" if noise else title
 
@@ -169,6 +144,7 @@ def _title(process: EnergyProcess | None, noise: bool = True) -> str:
 def _draw_orbits(figure: Figure, axes: Axes, process: EnergyProcess) -> None:
     from matplotlib import colormaps
     from matplotlib.cm import ScalarMappable
+    from matplotlib.colors import ListedColormap
 
     # The lightest tenth of the map is too pale for a line.
     shade = colormaps[DENSITY_MAP]
@@ -176,13 +152,13 @@ def _draw_orbits(figure: Figure, axes: Axes, process: EnergyProcess) -> None:
         axes.plot(*_level_curve(process, share), color=shade(0.9 * share))
     axes.plot(process.radius, np.pi / 2, "+", color=COLOURS["black"], markersize=7,
               label="fixed point")  # fmt: skip
+    axes.set(xlabel="distance $r$", ylabel=r"angle to the radius $\beta$")
     axes.set_xlim(left=0)
     axes.set_ylim(0, np.pi)
     axes.set_yticks([0, np.pi / 2, np.pi], ["0", r"$\pi/2$", r"$\pi$"])
-    axes.set_xlabel("distance $r$")
-    axes.set_ylabel(r"angle to the radius $\beta$")
     axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.2)
-    levels = ScalarMappable(cmap=_shortened(shade))
+    shortened = ListedColormap(shade(np.linspace(0.0, 0.9, 256)))
+    levels = ScalarMappable(cmap=shortened)
     bar = figure.colorbar(levels, ax=axes, pad=0.02, aspect=25)
     bar.set_label(r"$G / g_{\max}$")
     bar.set_ticks(list(_SHARES), labels=[f"{share:g}" for share in _SHARES])
@@ -199,12 +175,6 @@ def _level_curve(process: EnergyProcess, share: float) -> tuple[Any, Any]:
     return r, np.where(turn < np.pi, np.pi - np.arcsin(sine), np.arcsin(sine))
 
 
-def _shortened(shade: Any) -> Any:
-    from matplotlib.colors import ListedColormap
-
-    return ListedColormap(shade(np.linspace(0.0, 0.9, 256)))
-
-
 def _draw_fibres(axes: Axes, process: EnergyProcess) -> None:
     for share, colour in _FIBRES:
         xi = _rosette(process, share)
@@ -213,9 +183,7 @@ def _draw_fibres(axes: Axes, process: EnergyProcess) -> None:
     turn = np.linspace(0, 2 * np.pi, 201)
     axes.plot(process.radius * np.cos(turn), process.radius * np.sin(turn), "--",
               color=COLOURS["black"], linewidth=0.8)  # fmt: skip
-    axes.set_aspect("equal")
-    axes.set_xlabel(r"$\xi_1$")
-    axes.set_ylabel(r"$\xi_2$")
+    axes.set(aspect="equal", xlabel=r"$\xi_1$", ylabel=r"$\xi_2$")
     axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), borderaxespad=0.2,
                 ncols=3, columnspacing=1.2)  # fmt: skip
 
@@ -233,7 +201,7 @@ def _draw_law(axes: Axes, solution: EnergySolution) -> None:
     from matplotlib import colormaps
 
     grid = solution.grid
-    wanted = np.unique(np.linspace(0, len(solution.saved_s) - 1, 6).round().astype(int))
+    wanted = evenly(len(solution.saved_s), 6)
     shade = colormaps[DENSITY_MAP]
     for place, index in enumerate(wanted):
         colour = shade(0.9 * place / max(len(wanted) - 1, 1))
@@ -247,9 +215,8 @@ def _draw_law(axes: Axes, solution: EnergySolution) -> None:
     later = solution.densities[wanted[1:]] if len(wanted) > 1 else stationary
     # A start in one cell would leave nothing to see of the rest.
     axes.set_ylim(0, 1.3 * max(float(np.max(later)), float(np.median(stationary))))
-    axes.set_xlim(-grid.g_max if grid.signed else 0.0, grid.g_max)
-    axes.set_xlabel("energy $g$")
-    axes.set_ylabel("density $p(g, s)$")
+    lowest = -grid.g_max if grid.signed else 0.0
+    axes.set(xlim=(lowest, grid.g_max), xlabel="energy $g$", ylabel="density $p(g, s)$")
     axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=4, borderaxespad=0.2)
 
 
@@ -257,9 +224,7 @@ def _draw_entropy(axes: Axes, solution: EnergySolution) -> None:
     entropy = solution.relative_entropy
     shown = entropy > 0
     axes.plot(solution.s[shown], entropy[shown], color=COLOURS["blue"])
-    axes.set_yscale("log")
-    axes.set_xlabel("arclength $s$")
-    axes.set_ylabel("relative entropy $H$")
+    axes.set(yscale="log", xlabel="arclength $s$", ylabel="relative entropy $H$")
 
 
 def _draw_family(axes: Axes, found: Any, g: np.ndarray) -> None:
@@ -267,7 +232,6 @@ def _draw_family(axes: Axes, found: Any, g: np.ndarray) -> None:
         axes.plot(g, found.eigenfunction(index, g), color=COLOURS[_SEQUENCE[index]],
                   label=rf"$\lambda = {value:.4g}$")  # fmt: skip
     axes.axhline(0, color="0.8", linewidth=0.6, zorder=0)
-    axes.set_xlim(0, 1.02 * g[-1])
-    axes.set_xlabel("energy $g$")
-    axes.set_title({"even": "even: $|G|$", "odd": "odd: sign of $G$"}[found.family])
+    title = {"even": "even: $|G|$", "odd": "odd: sign of $G$"}[found.family]
+    axes.set(xlim=(0, 1.02 * g[-1]), xlabel="energy $g$", title=title)
     axes.legend(loc="upper left", ncols=2)

@@ -2,24 +2,17 @@
 
 from __future__ import annotations
 
-import math
 from types import SimpleNamespace
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fpsolve.density.solution import Solution
 from fpsolve.grids.phase_space import PhaseSpaceGrid
-from fpsolve.plotting.maps import (
-    add_colour_bar,
-    colour_scale,
-    draw_map,
-    show_region,
-    visible_region,
-)
+from fpsolve.plotting.angle import draw_uniform, show_turn
+from fpsolve.plotting.maps import draw_plane
 from fpsolve.plotting.moments import PANELS, draw_moments
 from fpsolve.plotting.selection import check_paths
-from fpsolve.plotting.style import COLOURS, PAGE, new_figure, paper_style, parameters
+from fpsolve.plotting.style import COLOURS, PAGE, drawing, parameters
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -52,10 +45,6 @@ def plot_ensemble(paths: Paths, s: float | None = None) -> Figure:
     s : float, optional
         Saved arclength of the histograms; by default the last.
 
-    Returns
-    -------
-    matplotlib.figure.Figure
-
     Raises
     ------
     ValueError
@@ -63,19 +52,17 @@ def plot_ensemble(paths: Paths, s: float | None = None) -> Figure:
     """
     check_paths(paths)
     histogram = _histogram(paths, s)
-    with paper_style():
+    height = 2.6 if histogram is None else 2.8 if len(paths.s) == 1 else 4.9
+    title = rf"{parameters(paths)};  {paths.n_paths} paths"
+    with drawing(PAGE, height, title) as figure:
         if histogram is None:
-            figure = new_figure(PAGE, 2.6)
             _draw_moments(figure.subplots(1, 3), paths)
         elif len(paths.s) == 1:
-            figure = new_figure(PAGE, 2.8)
             _draw_histograms(figure, paths, histogram)
         else:
-            figure = new_figure(PAGE, 4.9)
             parts: Any = figure.subfigures(2, 1, height_ratios=(1.15, 1))
             _draw_histograms(parts[0], paths, histogram)
             _draw_moments(parts[1].subplots(1, 3), paths)
-        figure.suptitle(_title(paths))
     return figure
 
 
@@ -96,12 +83,8 @@ def _fitting_grid(paths: Paths) -> PhaseSpaceGrid:
 def _draw_histograms(figure: FigureBase, paths: Paths, histogram: Histogram) -> None:
     left, right = figure.subplots(1, 2, gridspec_kw={"wspace": 0.08})
     density = histogram.density.sum(axis=2) * histogram.grid.spacing[2]
-    view = _as_solution(paths, grid=histogram.grid)
-    image = draw_map(left, view, density, colour_scale([density]))
+    image = draw_plane(left, histogram.grid, paths.model, [density])
     image.set_interpolation("nearest")
-    show_region(left, visible_region(view, [density]))
-    left.set(xlabel=r"$\xi_1$", ylabel=r"$\xi_2$")
-    add_colour_bar(figure, image, [left])
     _draw_angle(right, histogram)
     contours = len(left.collections) > 0
     left.set_title(f"$s = {histogram.s:g}$" + r";  contours: $p_S$" * contours)
@@ -115,35 +98,20 @@ def _draw_angle(axes: Axes, histogram: Histogram) -> None:
     share = histogram.counts.sum(axis=(0, 1)) / histogram.n_paths
     error = np.sqrt(share * (1 - share) / histogram.n_paths)
     axes.stairs(
-        (share + error) / width,
-        edges,
-        baseline=(share - error) / width,
-        fill=True,
-        color=COLOURS["blue"],
-        alpha=0.25,
-        linewidth=0,
-        label="± one standard error",
-    )
+        (share + error) / width, edges, baseline=(share - error) / width, fill=True,
+        color=COLOURS["blue"], alpha=0.25, linewidth=0, label="± one standard error",
+    )  # fmt: skip
     axes.stairs(share / width, edges, color=COLOURS["blue"], baseline=None)
-    axes.axhline(
-        1 / (2 * math.pi), color=COLOURS["black"], linewidth=0.8, label=r"$1/(2\pi)$"
-    )
-    axes.set_xlim(0, 2 * math.pi)
-    axes.set_xticks(
-        np.arange(5) * math.pi / 2,
-        ["0", r"$\pi/2$", r"$\pi$", r"$3\pi/2$", r"$2\pi$"],
-    )
+    draw_uniform(axes)
+    show_turn(axes)
     axes.set_ylim(0, 1.3 * float((share + error).max()) / width)
-    axes.set(xlabel=r"angle $\alpha$", ylabel=r"$\int p\;\mathrm{d}\xi$")
     axes.legend(loc="upper right", ncols=2, borderaxespad=0.2)
 
 
 def _draw_moments(panels: list[Axes], paths: Paths) -> None:
     moments = paths.moments()
-    view = _as_solution(
-        paths,
-        series={"s": moments.s, **moments.values},
-        errors=dict(moments.standard_errors),
+    view = SimpleNamespace(
+        series={"s": moments.s, **moments.values}, errors=moments.standard_errors
     )
     for axes, panel in zip(panels, PANELS, strict=True):
         draw_moments(axes, view, panel)
@@ -159,12 +127,3 @@ def _mark(axes: Axes, moments: Moments, panel: str) -> None:
         axes.errorbar(moments.s, values, errors, fmt=".", color=colour, markersize=4)
     if len(moments.s) == 1:
         axes.set_xlim(moments.s[0] - 0.5, moments.s[0] + 0.5)
-
-
-def _as_solution(paths: Paths, **parts: object) -> Solution:
-    """Return what the drawing functions read of a solution, taken from the paths."""
-    return cast(Solution, SimpleNamespace(model=paths.model, **parts))
-
-
-def _title(paths: Paths) -> str:
-    return rf"{parameters(_as_solution(paths))};  {paths.n_paths} paths"

@@ -9,8 +9,9 @@ from numpy.typing import NDArray
 
 from fpsolve.density.solution import Solution
 from fpsolve.evolution.decay import NOISE_LEVEL, DecayRate
+from fpsolve.plotting.moments import show_lengths
 from fpsolve.plotting.selection import check_solution
-from fpsolve.plotting.style import COLOURS, COLUMN, new_figure, paper_style, parameters
+from fpsolve.plotting.style import COLOURS, COLUMN, drawing, parameters
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -34,10 +35,6 @@ def plot_entropy(solution: Solution) -> Figure:
     ----------
     solution : Solution
 
-    Returns
-    -------
-    matplotlib.figure.Figure
-
     Raises
     ------
     ValueError
@@ -49,10 +46,8 @@ def plot_entropy(solution: Solution) -> Figure:
             "`solution` must have a relative entropy to show, got none; exp(-B) has to "
             "be normalisable."
         )
-    with paper_style():
-        figure = new_figure(COLUMN, 2.8)
+    with drawing(COLUMN, 2.8, parameters(solution)) as figure:
         draw_entropy(figure.subplots(), solution)
-        figure.suptitle(parameters(solution))
     return figure
 
 
@@ -63,18 +58,11 @@ def draw_entropy(axes: Axes, solution: Solution) -> None:
     _draw_band(axes, solution, excess)
     dissipation = _positive(solution.series["entropy_dissipation"])
     if np.isfinite(dissipation).any():
-        axes.plot(
-            s,
-            dissipation,
-            color=COLOURS["orange"],
-            linestyle="--",
-            label="dissipation",
-        )
+        axes.plot(s, dissipation, "--", color=COLOURS["orange"], label="dissipation")
     _draw_fit(axes, fitted_rate(solution))
     axes.set_yscale("log")
     _limit_decades(axes)
-    axes.set_xlim(s[0], s[-1] if s[-1] > s[0] else s[0] + 1)
-    axes.set_xlabel(r"arclength $s$")
+    show_lengths(axes, s)
     axes.set_ylabel("entropy and dissipation")
     axes.legend(borderaxespad=0.2)
 
@@ -110,15 +98,11 @@ def _draw_band(axes: Axes, solution: Solution, excess: NDArray[np.float64]) -> N
     if solution.errors is None or "relative_entropy" not in solution.errors:
         return
     error = solution.errors["relative_entropy"]
+    low, high = (np.maximum(excess + one, NOISE_LEVEL) for one in (-error, error))
     axes.fill_between(
-        solution.series["s"],
-        np.maximum(excess - error, NOISE_LEVEL),
-        np.maximum(excess + error, NOISE_LEVEL),
-        color=COLOURS["blue"],
-        alpha=0.25,
-        linewidth=0,
+        solution.series["s"], low, high, color=COLOURS["blue"], alpha=0.25, linewidth=0,
         label=rf"error $\leq {_power_of_ten(float(np.nanmax(error)))}$",
-    )
+    )  # fmt: skip
 
 
 def _draw_fit(axes: Axes, fit: DecayRate | None) -> None:
@@ -127,13 +111,9 @@ def _draw_fit(axes: Axes, fit: DecayRate | None) -> None:
     window = np.linspace(*fit.window, 50)
     rate = str(fit).replace("±", r"\pm")
     axes.plot(
-        window,
-        fit.amplitude * np.exp(-fit.rate * window),
-        color=COLOURS["black"],
-        linestyle=":",
-        linewidth=1.6,
-        label=rf"$\lambda = {rate}$",
-    )
+        window, fit.amplitude * np.exp(-fit.rate * window), ":",
+        color=COLOURS["black"], linewidth=1.6, label=rf"$\lambda = {rate}$",
+    )  # fmt: skip
 
 
 def _power_of_ten(number: float) -> str:

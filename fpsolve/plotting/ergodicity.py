@@ -3,25 +3,29 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from itertools import cycle
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fpsolve.plotting.selection import check_dataset
-from fpsolve.plotting.style import COLOURS, PAGE, new_figure, paper_style
+from fpsolve.plotting.logarithmic import legend_with_room, plain_numbers
+from fpsolve.plotting.moments import draw_band
+from fpsolve.plotting.selection import check_dataset, evenly
+from fpsolve.plotting.style import COLOURS, LINES, MARKERS, PAGE, drawing
 from fpsolve.studies.ergodicity.fit import ErgodicFit, ErrorShape, fit_ergodic_error
 
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.axes import Axes
-    from matplotlib.axis import Axis
     from matplotlib.figure import Figure
 
-__all__ = ["plot_ergodic_averages"]
+__all__ = ["plot_ergodic_averages", "symbol"]
 
 _MOST_NOISES = 5
 # Below this many standard errors an asymptotic variance is not drawn.
 _CLEAR = 3.0
+# Of curves, from small to large noise.
+_SHADES = ("blue", "sky", "green", "orange", "vermilion", "purple", "black")
 _SYMBOLS = {
     "position": r"$\xi_1$",
     "square": r"$\|\xi\|^2$",
@@ -29,7 +33,6 @@ _SYMBOLS = {
     "direction": r"$\cos\,\alpha$",
     "circulation": r"$e^{-B}\,\xi\times\tau$",
 }
-_MARKERS = "osD^vP"
 
 
 def plot_ergodic_averages(
@@ -57,10 +60,6 @@ def plot_ergodic_averages(
     fit : ErgodicFit, optional
         By default `fit_ergodic_error(dataset)`.
 
-    Returns
-    -------
-    matplotlib.figure.Figure
-
     Raises
     ------
     ValueError
@@ -74,21 +73,17 @@ def plot_ergodic_averages(
         )
     chosen = _chosen_noises(dataset, noises)
     fit = fit_ergodic_error(dataset) if fit is None else fit
-    with paper_style():
-        figure = new_figure(PAGE, 3.1)
+    with drawing(PAGE, 3.1, _title(dataset)) as figure:
         left, right = figure.subplots(1, 2)
         _draw_errors(left, dataset, function, chosen)
         _draw_variances(right, dataset, fit)
-        figure.suptitle(_title(dataset))
     return figure
 
 
 def _chosen_noises(dataset: xr.Dataset, noises: Iterable[float] | None) -> list[float]:
     known = np.sort(dataset["noise"].to_numpy())
     if noises is None:
-        count = min(known.size, _MOST_NOISES)
-        places = np.linspace(0, known.size - 1, count).round().astype(int)
-        return [float(noise) for noise in known[places]]
+        return [float(known[place]) for place in evenly(known.size, _MOST_NOISES)]
     chosen = []
     for noise in noises:
         nearest = float(known[np.argmin(np.abs(known - noise))])
@@ -105,22 +100,22 @@ def _draw_errors(
     selected = dataset.sel(function=function)
     deviation = float(selected["deviation"])
     s = selected["s"].to_numpy()
-    for noise, colour in zip(noises, _shades(len(noises)), strict=True):
-        one = selected.sel(noise=noise)
+    for noise, shade in zip(noises, cycle(_SHADES), strict=False):
+        one, colour = selected.sel(noise=noise), COLOURS[shade]
         error = one["error"].to_numpy() / deviation
         band = 2 * one["error_standard_error"].to_numpy() / deviation
-        axes.fill_between(
-            s, error - band, error + band, color=colour, alpha=0.25, linewidth=0
-        )
+        draw_band(axes, s, error, band, colour)
         axes.plot(s, error, color=colour, label=f"$A = {noise:.2g}$")
     _draw_slope(axes)
-    axes.set_xscale("log")
-    axes.set_yscale("log")
-    axes.set_xlim(s[0], s[-1])
-    _plain_numbers(axes.yaxis)
-    axes.set_xlabel(r"arclength $s$")
-    axes.set_ylabel(r"$\|s^{-1}\!\int f - \mathrm{E} f\| \,/\, \|f - \mathrm{E} f\|$")
-    axes.set_title(f"$f =$ {_symbol(function)}")
+    axes.set(
+        xscale="log",
+        yscale="log",
+        xlim=(s[0], s[-1]),
+        xlabel=r"arclength $s$",
+        ylabel=r"$\|s^{-1}\!\int f - \mathrm{E} f\| \,/\, \|f - \mathrm{E} f\|$",
+        title=f"$f =$ {symbol(function)}",
+    )
+    plain_numbers(axes.yaxis, (1, 2, 3, 5), 30)
     axes.legend(loc="lower left", borderaxespad=0.2)
 
 
@@ -143,35 +138,31 @@ def _draw_slope(axes: Axes) -> None:
 def _draw_variances(axes: Axes, dataset: xr.Dataset, fit: ErgodicFit) -> None:
     noises = dataset["noise"].to_numpy()
     fine = np.geomspace(noises.min(), noises.max(), 200)
-    names = [str(name) for name in dataset["function"].to_numpy()]
-    colours = [colour for name, colour in COLOURS.items() if name != "black"]
-    drawn = 0
-    for name in names:
+    looks = zip(cycle(LINES), cycle(MARKERS), strict=True)
+    for name in map(str, dataset["function"].to_numpy()):
         one = dataset.sel(function=name)
         variance = one["asymptotic_variance"].to_numpy()
         error = one["asymptotic_variance_standard_error"].to_numpy()
         if not np.all(variance > _CLEAR * error):
             continue
         scale = float(one["deviation"]) ** 2
-        colour = colours[drawn % len(colours)]
+        colour, marker = next(looks)
         axes.errorbar(
             noises, variance / scale, 2 * error / scale, color=colour,
-            marker=_MARKERS[drawn % len(_MARKERS)], markersize=3.5, linestyle="none",
-            elinewidth=0.8, label=_symbol(name),
+            marker=marker, markersize=3.5, linestyle="none",
+            elinewidth=0.8, label=symbol(name),
         )  # fmt: skip
         axes.plot(fine, fit[name].variance(fine), "--", color=colour, linewidth=0.9)
         _mark_least(axes, fit[name], colour, variance / scale, noises)
-        drawn += 1
-    axes.set_xscale("log")
-    axes.set_yscale("log")
-    axes.set_xlabel(r"noise $A$")
-    axes.set_ylabel(r"$\lim\; s\,\mathrm{error}^2 \,/\, \|f - \mathrm{E} f\|^2$")
-    axes.set_title("asymptotic variance; dashed: $c_1^2(c_2/A + c_3A)^2$")
-    _plain_numbers(axes.xaxis)
-    if drawn:
-        axes.legend(loc="upper center", ncols=2, borderaxespad=0.2)
-        bottom, top = axes.get_ylim()
-        axes.set_ylim(bottom, top * (top / bottom) ** 0.3)
+    axes.set(
+        xscale="log",
+        yscale="log",
+        xlabel=r"noise $A$",
+        ylabel=r"$\lim\; s\,\mathrm{error}^2 \,/\, \|f - \mathrm{E} f\|^2$",
+        title="asymptotic variance; dashed: $c_1^2(c_2/A + c_3A)^2$",
+    )
+    plain_numbers(axes.xaxis, (1, 2, 3, 5), 30)
+    legend_with_room(axes, borderaxespad=0.2)
 
 
 def _mark_least(
@@ -189,25 +180,8 @@ def _mark_least(
     )  # fmt: skip
 
 
-def _plain_numbers(axis: Axis) -> None:
-    """Label 0.2, 0.5, 1, … along a range of about a decade; not 5 x 10⁻¹."""
-    from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
-
-    low, high = axis.get_view_interval()
-    digits = [1, 2, 3, 5] if high < 30 * low else [1]
-    candidates = np.outer(10.0 ** np.arange(-6, 7), digits).ravel()
-    axis.set_major_locator(FixedLocator(candidates[candidates >= low].tolist()))
-    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-    axis.set_minor_locator(NullLocator())
-
-
-def _shades(count: int) -> list[str]:
-    """Colours from small to large noise."""
-    order = ("blue", "sky", "green", "orange", "vermilion", "purple", "black")
-    return [COLOURS[order[index % len(order)]] for index in range(count)]
-
-
-def _symbol(name: str) -> str:
+def symbol(name: str) -> str:
+    """Return a function of the studies as a formula; of a user's own its name."""
     return _SYMBOLS.get(name, name)
 
 

@@ -15,7 +15,7 @@ from fpsolve.results.kinds import kind_of
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["possible_figures", "save_figures"]
+__all__ = ["possible_figures", "save_figures", "write_figure"]
 
 
 def save_figures(
@@ -52,7 +52,7 @@ def save_figures(
     directory = made_folder(directory)
     with paper_style():
         return [
-            _write(plot(result), directory / f"{prefix}{name}.png")
+            write_figure(plot(result), directory / f"{prefix}{name}.png")
             for name, plot in figures.items()
         ]
 
@@ -62,7 +62,8 @@ def possible_figures(result: Any) -> dict[str, Callable[[Any], Figure]]:
     return FIGURES[kind_of(result)](result)
 
 
-def _write(figure: Figure, path: Path) -> Path:
+def write_figure(figure: Figure, path: Path) -> Path:
+    """Write a figure as PNG, whole or not at all; return the path."""
     with paper_style(), atomic_path(path) as draft:
         figure.savefig(draft, dpi=RESOLUTION)
     return path

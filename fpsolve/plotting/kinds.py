@@ -6,7 +6,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from fpsolve.density.solution import Solution
+from fpsolve._support.declared import declared
 from fpsolve.paths.result import Paths
 from fpsolve.plotting.angle import plot_angle
 from fpsolve.plotting.comparison import plot_cross_check
@@ -19,6 +19,7 @@ from fpsolve.plotting.energy import (
 from fpsolve.plotting.ensembles import plot_ensemble
 from fpsolve.plotting.entropy import has_entropy, plot_entropy
 from fpsolve.plotting.ergodicity import plot_ergodic_averages
+from fpsolve.plotting.fibres import plot_fibre
 from fpsolve.plotting.hydrodynamic import plot_hydrodynamic
 from fpsolve.plotting.limits import plot_large_noise
 from fpsolve.plotting.marginals import plot_marginals
@@ -28,22 +29,25 @@ from fpsolve.plotting.rates import (
     plot_asymptotic_variance,
     plot_inverse_decay_rate,
     plot_rates,
-    plot_spectrum,
 )
+from fpsolve.plotting.selection import potential_of
 from fpsolve.plotting.series import (
     plot_energy_paths,
     plot_hydrodynamic_paths,
     plot_spectral,
 )
 from fpsolve.plotting.small_noise import plot_small_noise, plot_small_noise_spectrum
+from fpsolve.plotting.spectrum import plot_spectrum
 from fpsolve.plotting.stationary import plot_steady_state
-from fpsolve.plotting.trajectories import plot_fibre, plot_trajectories
+from fpsolve.plotting.trajectories import plot_trajectories
+from fpsolve.reduced.energy.process import EnergyProcess
 
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
 
-    Figures = dict[str, Callable[[Any], Figure]]
+    Plot = Callable[[Any], Figure]
+    Figures = dict[str, Plot]
 
 __all__ = ["FIGURES"]
 
@@ -51,81 +55,51 @@ __all__ = ["FIGURES"]
 FEWEST_NOISES = 2
 
 
-def of_solution(solution: Solution) -> Figures:
-    """Of a density what was saved and recorded."""
-    figures: Figures = {}
-    if len(solution.saved_s):
-        figures["overview"] = plot_overview
-        figures["marginals"] = plot_marginals
-        figures["angle"] = plot_angle
-    if has_entropy(solution):
-        figures["entropy"] = plot_entropy
-    if len(solution.series["s"]):
-        figures["moments"] = plot_moments
-    return figures
+def each(**figures: tuple[Plot, Callable[[Any], bool]]) -> Callable[[Any], Figures]:
+    """Return what names the figures that a result allows, of these with conditions."""
+
+    def allowed(result: Any) -> Figures:
+        return {name: plot for name, (plot, needs) in figures.items() if needs(result)}
+
+    return allowed
 
 
-def of_paths(paths: Paths) -> Figures:
-    """Of paths their law, and one of them."""
-    figures: Figures = {"ensemble": plot_ensemble}
-    # Without its model or its start no path can be run again.
-    if paths.model is None or not (paths.kept or paths.initial is not None):
-        return figures
-    if paths.model.curve.fixed:
-        return {**figures, "trajectory": plot_trajectories}
-    return {**figures, "fibre": plot_fibre}
+def always(result: Any) -> bool:
+    """Of every result of its kind."""
+    return True
 
 
-def of_hydrodynamic(solution: Any) -> Figures:
-    """Of the limit of much noise what was saved."""
-    return {"hydrodynamic": plot_hydrodynamic} if len(solution.saved_s) else {}
+def saved(solution: Any) -> bool:
+    """Where a density was saved."""
+    return len(solution.saved_s) > 0
 
 
-def of_energy(solution: Any) -> Figures:
-    """Of the energy its law, where it was saved."""
-    return {"law": plot_energy_law} if len(solution.saved_s) else {}
+def recorded(solution: Any) -> bool:
+    """Where there are numbers over s."""
+    return len(solution.series["s"]) > 0
 
 
-def of_spectrum(found: Any) -> Figures:
-    """Of a spectrum its eigenvalues, beside the model that they are of."""
-    return {"spectrum": plot_spectrum} if found.model is not None else {}
+def known(*names: str) -> Callable[[xr.Dataset], bool]:
+    """Where a study has computed one of these variables."""
+
+    def computed(dataset: xr.Dataset) -> bool:
+        return any(name in dataset and dataset[name].notnull().any() for name in names)
+
+    return computed
 
 
-def of_rates(dataset: xr.Dataset) -> Figures:
-    """Of a study of rates what its parts computed."""
-    figures: Figures = {}
-    if _known(dataset, "inverse_decay_rate"):
-        figures["integral"] = plot_inverse_decay_rate
-    if _known(dataset, "gap") or _known(dataset, "branch_rate"):
-        figures["rates"] = plot_rates
-    if _known(dataset, "asymptotic_variance"):
-        figures["averages"] = plot_asymptotic_variance
-    return figures
-
-
-def of_large_noise(dataset: xr.Dataset) -> Figures:
-    """Of the limit of much noise the distances."""
-    return {"distances": plot_large_noise} if _known(dataset, "distance") else {}
-
-
-def of_small_noise(dataset: xr.Dataset) -> Figures:
-    """Of the limit of little noise the distances."""
-    return {"distances": plot_small_noise} if _known(dataset, "distance") else {}
+def replayed(paths: Paths) -> bool:
+    """Where a path can be run again, which needs its model and its start."""
+    return paths.model is not None and (paths.kept or paths.initial is not None)
 
 
 def of_energy_tables(dataset: xr.Dataset) -> Figures:
     """Of the energy process orbits, coefficients and modes."""
-    from fpsolve._support.declared import declared
-    from fpsolve.model.potentials.dictionaries import potential_from_dict
-    from fpsolve.reduced.energy.process import EnergyProcess
-
-    about = declared(dataset.attrs)
-    try:
-        potential = potential_from_dict(about["potential"])
-    # A user's own, without which there are no orbits.
-    except ValueError:
+    potential = potential_of(dataset)
+    # Without a user's own there are no orbits.
+    if potential is None:
         return {}
-    process = EnergyProcess(potential, about["noise"])
+    process = EnergyProcess(potential, declared(dataset.attrs)["noise"])
     drawn = {
         "orbits": plot_orbits, "coefficients": plot_energy_coefficients,
         "eigenfunctions": plot_energy_eigenfunctions,
@@ -144,31 +118,42 @@ def of_averages(dataset: xr.Dataset) -> Figures:
 
 # By the kind of a result; what returns the figures that it allows.
 FIGURES: dict[str, Callable[[Any], Figures]] = {
-    "solution": of_solution,
-    "paths": of_paths,
-    "hydrodynamic": of_hydrodynamic,
-    "energy": of_energy,
-    "steady-state": lambda result: {"stationary": plot_steady_state},
-    "spectral": lambda solution: {"series": plot_spectral},
+    "solution": each(
+        overview=(plot_overview, saved),
+        marginals=(plot_marginals, saved),
+        angle=(plot_angle, saved),
+        entropy=(plot_entropy, has_entropy),
+        moments=(plot_moments, recorded),
+    ),
+    "paths": each(
+        ensemble=(plot_ensemble, always),
+        trajectory=(plot_trajectories, lambda p: replayed(p) and p.model.curve.fixed),
+        fibre=(plot_fibre, lambda p: replayed(p) and not p.model.curve.fixed),
+    ),
+    "hydrodynamic": each(hydrodynamic=(plot_hydrodynamic, saved)),
+    "energy": each(law=(plot_energy_law, saved)),
+    "steady-state": each(stationary=(plot_steady_state, always)),
+    "spectral": each(series=(plot_spectral, always)),
     # A density on whatever grid is chosen, and none before.
-    "spectral-steady-state": lambda result: {},
-    "energy-paths": lambda paths: {"energies": plot_energy_paths},
-    "hydrodynamic-paths": lambda paths: {"moments": plot_hydrodynamic_paths},
-    "check": lambda check: {"check": plot_cross_check},
-    "spectrum": of_spectrum,
-    "rate": of_rates,
-    "large-noise": of_large_noise,
-    "small-noise": of_small_noise,
-    "small-noise-spectrum": lambda dataset: {"spectrum": plot_small_noise_spectrum},
+    "spectral-steady-state": each(),
+    "energy-paths": each(energies=(plot_energy_paths, always)),
+    "hydrodynamic-paths": each(moments=(plot_hydrodynamic_paths, always)),
+    "check": each(check=(plot_cross_check, always)),
+    # Beside the model that they are of.
+    "spectrum": each(spectrum=(plot_spectrum, lambda found: found.model is not None)),
+    "rate": each(
+        integral=(plot_inverse_decay_rate, known("inverse_decay_rate")),
+        rates=(plot_rates, known("gap", "branch_rate")),
+        averages=(plot_asymptotic_variance, known("asymptotic_variance")),
+    ),
+    "large-noise": each(distances=(plot_large_noise, known("distance"))),
+    "small-noise": each(distances=(plot_small_noise, known("distance"))),
+    "small-noise-spectrum": each(spectrum=(plot_small_noise_spectrum, always)),
     "energy-tables": of_energy_tables,
     "averages": of_averages,
 }
 
 
-def _known(dataset: xr.Dataset, name: str) -> bool:
-    return name in dataset and bool(dataset[name].notnull().any())
-
-
-def _drawn(plot: Callable[[Any], Figure], shown: Any, result: Any) -> Figure:
+def _drawn(plot: Plot, shown: Any, result: Any) -> Figure:
     """Draw what a result is about, and not the result."""
     return plot(shown)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fpsolve.plotting.selection import check_dataset
-from fpsolve.plotting.style import COLOURS, PAGE, new_figure, paper_style
+from fpsolve.plotting.style import COLOURS, PAGE, drawing
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -58,10 +58,6 @@ def plot_large_noise(dataset: xr.Dataset) -> Figure:
     ----------
     dataset : xarray.Dataset
         From `large_noise_limit`.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     check_dataset("dataset", dataset)
     if "expected_order" not in dataset or "epsilon" not in dataset.coords:
@@ -71,8 +67,8 @@ def plot_large_noise(dataset: xr.Dataset) -> Figure:
         )
     panels = _panels(dataset)
     rows = math.ceil(len(panels) / _COLUMNS)
-    with paper_style():
-        figure = new_figure(PAGE, 0.5 + 2.4 * rows)
+    title = f"$B$ = {dataset.attrs['formula']}"
+    with drawing(PAGE, 0.5 + 2.4 * rows, title) as figure:
         grid = figure.subplots(rows, min(_COLUMNS, len(panels)), squeeze=False)
         for axes, (part, lines) in zip(grid.flat, panels.items(), strict=False):
             _draw(axes, dataset, lines)
@@ -83,7 +79,6 @@ def plot_large_noise(dataset: xr.Dataset) -> Figure:
             axes.set_ylabel("distance")
         for axes in grid[-1]:
             axes.set_xlabel(r"$\varepsilon = A^{-2}$")
-        figure.suptitle(f"$B$ = {dataset.attrs['formula']}")
         _legend(figure, grid)
     return figure
 
@@ -138,10 +133,8 @@ def _draw_slope(
     usable = np.isfinite(distance) & (distance > 0)
     least = int(np.argmin(np.where(usable, epsilon, np.inf)))
     ends = np.array([epsilon.min(), epsilon.max()])
-    axes.plot(
-        ends, distance[least] * (ends / epsilon[least]) ** order, color=colour,
-        linewidth=0.7,
-    )  # fmt: skip
+    line = distance[least] * (ends / epsilon[least]) ** order
+    axes.plot(ends, line, color=colour, linewidth=0.7)
 
 
 def _fraction(epsilon: float) -> str:

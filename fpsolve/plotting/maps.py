@@ -2,31 +2,41 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve.density.solution import Solution
-from fpsolve.plotting.style import DENSITY_MAP
+from fpsolve.plotting.style import DENSITY_MAP, show_frame
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.colors import Normalize
     from matplotlib.figure import FigureBase
 
-    from fpsolve.reduced.hydrodynamic.solution import HydrodynamicSolution
+    from fpsolve.grids.phase_space import PhaseSpaceGrid
+    from fpsolve.grids.plane import PlaneGrid
+    from fpsolve.model.laydown import LayDownModel
 
 __all__ = [
+    "N_MAPS",
     "SHARES",
     "add_colour_bar",
     "colour_scale",
+    "draw_density",
     "draw_map",
+    "draw_plane",
+    "draw_row",
     "enclosing_levels",
     "show_region",
     "visible_region",
 ]
 
+Array = NDArray[np.float64]
+
+# Maps in a row, at most.
+N_MAPS = 4
 # Shares of the equilibrium's mass that its contours enclose.
 SHARES = (0.5, 0.95)
 # Peaks that differ by more than this would leave the flattest map dark on a linear
@@ -37,38 +47,74 @@ _MASS_OUTSIDE = 1e-3
 
 
 def draw_map(
-    axes: Axes, solution: Solution, values: NDArray[np.float64], scale: Normalize
+    axes: Axes,
+    grid: PhaseSpaceGrid | PlaneGrid,
+    values: Array,
+    scale: Normalize,
+    stationary: Array | None,
 ) -> Any:
-    """Draw one ξ marginal and the contours of p_S; return the image."""
-    width1, width2 = solution.grid.half_widths
+    """Draw a density over the plane and the contours of another; return the image."""
+    width1, width2 = grid.half_widths
     image = axes.imshow(
-        np.maximum(values, 0.0).T,
-        origin="lower",
-        extent=(-width1, width1, -width2, width2),
-        cmap=DENSITY_MAP,
-        norm=scale,
-        interpolation="bilinear",
-    )
-    model = solution.model
-    if model is not None and model.potential.normalisable:
-        xi1, xi2 = solution.grid.plane()
-        equilibrium = np.broadcast_to(model.equilibrium(xi1, xi2), values.shape)
+        np.maximum(values, 0.0).T, origin="lower", cmap=DENSITY_MAP, norm=scale,
+        extent=(-width1, width1, -width2, width2), interpolation="bilinear",
+    )  # fmt: skip
+    if stationary is not None:
         axes.contour(
-            solution.grid.xi1,
-            solution.grid.xi2,
-            equilibrium.T,
-            levels=enclosing_levels(equilibrium),
-            colors="white",
-            linewidths=0.8,
-            linestyles=("--", "-"),
-        )
+            grid.xi1, grid.xi2, stationary.T, levels=enclosing_levels(stationary),
+            colors="white", linewidths=0.8, linestyles=("--", "-"),
+        )  # fmt: skip
     axes.set_aspect("equal")
-    for side in ("top", "right"):
-        axes.spines[side].set_visible(True)
     return image
 
 
-def colour_scale(maps: list[NDArray[np.float64]]) -> Normalize:
+def draw_density(
+    grid: PhaseSpaceGrid,
+    model: LayDownModel | None,
+    axes: Axes,
+    values: Array,
+    scale: Normalize,
+) -> Any:
+    """Draw one ξ marginal and the contours of p_S; return the image."""
+    stationary = None
+    if model is not None and model.potential.normalisable:
+        stationary = np.broadcast_to(model.equilibrium(*grid.plane()), values.shape)
+    show_frame(axes)
+    return draw_map(axes, grid, values, scale, stationary)
+
+
+def draw_plane(
+    axes: Axes, grid: PhaseSpaceGrid, model: LayDownModel | None, maps: list[Array]
+) -> Any:
+    """Draw the first of some ξ marginals, at the scale of all; return the image."""
+    image = draw_density(grid, model, axes, maps[0], colour_scale(maps))
+    show_region(axes, visible_region(grid, maps))
+    add_colour_bar(axes.figure, image, [axes])
+    axes.set(xlabel=r"$\xi_1$", ylabel=r"$\xi_2$")
+    return image
+
+
+def draw_row(
+    figure: FigureBase,
+    grid: PhaseSpaceGrid | PlaneGrid,
+    maps: Mapping[float, Array],
+    draw: Callable[[Axes, Array, Normalize], Any],
+) -> Any:
+    """Draw at most four maps by their s beside each other; return the colour bar."""
+    panels = figure.subplots(1, N_MAPS, sharey=True)
+    for axes in panels[len(maps) :]:
+        axes.set_axis_off()
+    values = list(maps.values())
+    scale, region = colour_scale(values), visible_region(grid, values)
+    for axes, (s, one) in zip(panels, maps.items(), strict=False):
+        image = draw(axes, one, scale)
+        axes.set(title=f"$s = {s:g}$", xlabel=r"$\xi_1$")
+        show_region(axes, region)
+    panels[0].set_ylabel(r"$\xi_2$")
+    return add_colour_bar(figure, image, list(panels[: len(maps)]))
+
+
+def colour_scale(maps: list[Array]) -> Normalize:
     """Return the scale that maps share, from 0 to the highest peak.
 
     Linear, or that of the square root when the peaks differ much; the ticks of the
@@ -83,7 +129,7 @@ def colour_scale(maps: list[NDArray[np.float64]]) -> Normalize:
     return Normalize(vmin=0.0, vmax=highest)
 
 
-def enclosing_levels(density: NDArray[np.float64]) -> list[float]:
+def enclosing_levels(density: Array) -> list[float]:
     """Return ascending levels of a density whose contours enclose the given shares."""
     descending = np.sort(density, axis=None)[::-1]
     enclosed = np.cumsum(descending) / descending.sum()
@@ -92,10 +138,9 @@ def enclosing_levels(density: NDArray[np.float64]) -> list[float]:
 
 
 def visible_region(
-    solution: Solution | HydrodynamicSolution, maps: list[NDArray[np.float64]]
+    grid: PhaseSpaceGrid | PlaneGrid, maps: list[Array]
 ) -> tuple[float, float]:
     """Return half widths of a window with all but 0.1 % of the mass of every map."""
-    grid = solution.grid
     widths = []
     for axis, cells in enumerate((grid.xi1, grid.xi2)):
         distance = np.abs(cells)

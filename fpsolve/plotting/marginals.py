@@ -13,17 +13,17 @@ from fpsolve.plotting.maps import (
     SHARES,
     add_colour_bar,
     colour_scale,
-    draw_map,
+    draw_density,
     show_region,
     visible_region,
 )
 from fpsolve.plotting.selection import check_solution, select_s
-from fpsolve.plotting.style import COLUMN, PAGE, new_figure, paper_style, parameters
+from fpsolve.plotting.style import COLUMN, PAGE, drawing, parameters
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["plot_marginals"]
+__all__ = ["label_outer", "plot_marginals"]
 
 _MOST_MAPS, _MAPS_PER_ROW = 8, 4
 
@@ -41,10 +41,6 @@ def plot_marginals(solution: Solution, at: Iterable[float] | None = None) -> Fig
     at : iterable of float, optional
         Saved arclengths to show; by default all, at most eight of them.
 
-    Returns
-    -------
-    matplotlib.figure.Figure
-
     Raises
     ------
     ValueError
@@ -54,22 +50,19 @@ def plot_marginals(solution: Solution, at: Iterable[float] | None = None) -> Fig
     chosen = select_s(solution, at, _MOST_MAPS)
     maps = [solution.marginal("xi", s) for s in chosen]
     n_rows, n_columns = _layout(len(maps))
-    with paper_style():
-        region = visible_region(solution, maps)
-        figure = new_figure(*_map_size(region, n_rows, n_columns))
+    region = visible_region(solution.grid, maps)
+    title = _map_title(solution, one_line=n_columns > 1)
+    with drawing(*_map_size(region, n_rows, n_columns), title) as figure:
         panels = figure.subplots(
             n_rows, n_columns, sharex=True, sharey=True, squeeze=False
         )
         scale = colour_scale(maps)
         for axes, s, values in zip(panels.flat, chosen, maps, strict=False):
-            image = draw_map(axes, solution, values, scale)
+            image = draw_density(solution.grid, solution.model, axes, values, scale)
             axes.set_title(f"$s = {s:g}$")
         show_region(panels.flat[0], region)
-        for axes in panels.flat[len(maps) :]:
-            axes.remove()
-        _label_outer(panels, len(maps))
+        label_outer(panels, len(maps))
         add_colour_bar(figure, image, panels.ravel()[: len(maps)].tolist())
-        figure.suptitle(_map_title(solution, one_line=n_columns > 1))
     return figure
 
 
@@ -88,12 +81,15 @@ def _map_size(
     return width, n_rows * (panel * region[1] / region[0] + 0.3) + 0.65
 
 
-def _label_outer(panels: NDArray[Any], n_maps: int) -> None:
+def label_outer(panels: NDArray[Any], n_panels: int) -> None:
+    """Name ξ1 and ξ2 where a panel has no neighbour; remove those that are too many."""
     n_columns = panels.shape[1]
-    for index, axes in enumerate(panels.flat[:n_maps]):
+    for axes in panels.flat[n_panels:]:
+        axes.remove()
+    for index, axes in enumerate(panels.flat[:n_panels]):
         if index % n_columns == 0:
             axes.set_ylabel(r"$\xi_2$")
-        if index + n_columns >= n_maps:
+        if index + n_columns >= n_panels:
             axes.set_xlabel(r"$\xi_1$")
             axes.tick_params(labelbottom=True)
 

@@ -11,15 +11,8 @@ import numpy as np
 from fpsolve._support.checks import check_path, check_real
 from fpsolve._support.files import atomic_path
 from fpsolve.density.solution import Solution
-from fpsolve.plotting.entropy import draw_entropy, has_entropy
-from fpsolve.plotting.maps import (
-    add_colour_bar,
-    colour_scale,
-    draw_map,
-    show_region,
-    visible_region,
-)
-from fpsolve.plotting.moments import draw_moments
+from fpsolve.plotting.maps import draw_plane
+from fpsolve.plotting.overview import draw_decay
 from fpsolve.plotting.selection import check_solution
 from fpsolve.plotting.style import COLOURS, PAGE, new_figure, paper_style, parameters
 
@@ -117,16 +110,9 @@ def _stage(solution: Solution) -> tuple[Any, Any]:
     figure = new_figure(PAGE, 3.0)
     left, right = figure.subplots(1, 2)
     maps = {float(s): solution.marginal("xi", s) for s in solution.saved_s}
+    image = draw_plane(left, solution.grid, solution.model, list(maps.values()))
+    draw_decay(right, solution, "spread")
     first = float(solution.saved_s[0])
-    image = draw_map(left, solution, maps[first], colour_scale(list(maps.values())))
-    show_region(left, visible_region(solution, list(maps.values())))
-    add_colour_bar(figure, image, [left])
-    left.set_xlabel(r"$\xi_1$")
-    left.set_ylabel(r"$\xi_2$")
-    if has_entropy(solution):
-        draw_entropy(right, solution)
-    else:
-        draw_moments(right, solution, "spread")
     cursor = right.axvline(first, color=COLOURS["vermilion"], linewidth=1.0)
     figure.suptitle(parameters(solution))
 

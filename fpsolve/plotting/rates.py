@@ -3,30 +3,31 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING
+from itertools import cycle
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fpsolve.plotting.ergodicity import _symbol
-from fpsolve.plotting.selection import check_dataset, check_datasets, check_spectrum
-from fpsolve.plotting.style import COLOURS, COLUMN, PAGE, new_figure, paper_style
+from fpsolve.plotting.ergodicity import symbol
+from fpsolve.plotting.logarithmic import legend_with_room, plain_numbers
+from fpsolve.plotting.selection import check_dataset, check_datasets, potential_of
+from fpsolve.plotting.spectrum import sector_label
+from fpsolve.plotting.style import COLOURS, COLUMN, MARKERS, PAGE, drawing
 
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from fpsolve.spectral.eigen.spectrum import Spectrum
+__all__ = ["plot_asymptotic_variance", "plot_inverse_decay_rate", "plot_rates"]
 
-__all__ = [
-    "plot_asymptotic_variance",
-    "plot_inverse_decay_rate",
-    "plot_rates",
-    "plot_spectrum",
-]
-
+_LOG_LOG: dict[str, Any] = {"xscale": "log", "yscale": "log", "xlabel": "noise $A$"}
+_COLOURS = [COLOURS[name] for name in ("blue", "vermilion", "green", "orange")]
+_CIRCLES: dict[str, Any] = {
+    "marker": "o", "markerfacecolor": "white", "linestyle": "none",
+    "elinewidth": 0.9, "capsize": 1.5,
+}  # fmt: skip
 _SECTOR_COLOURS = ("vermilion", "green", "blue", "orange")
-_MARKERS = "osD^vP"
 # Below this a variance is that of a derivative along the path: zero.
 _VANISHING = 1e-8
 
@@ -42,27 +43,17 @@ def plot_inverse_decay_rate(datasets: xr.Dataset | Iterable[xr.Dataset]) -> Figu
     datasets : xarray.Dataset or iterable of them
         From `rate_versus_noise`; one for each potential.
 
-    Returns
-    -------
-    matplotlib.figure.Figure
-
     References
     ----------
     [KMW09]_, figure 5.
     """
     listed = check_datasets(datasets)
     _require(listed, "inverse_decay_rate", "relaxation")
-    with paper_style():
-        figure = new_figure(COLUMN, 2.8)
+    with drawing(COLUMN, 2.8) as figure:
         axes = figure.subplots()
-        for dataset, colour in zip(
-            listed, ("blue", "vermilion", "green"), strict=False
-        ):
-            _draw_integral(axes, dataset, COLOURS[colour])
-        axes.set_xscale("log")
-        axes.set_yscale("log")
-        axes.set_xlabel(r"noise $A$")
-        axes.set_ylabel(r"$I = \int_0^S H(p(s)\,|\,p_S)\,\mathrm{d}s$")
+        for dataset, colour in zip(listed, _COLOURS, strict=False):
+            _draw_integral(axes, dataset, colour)
+        axes.set(**_LOG_LOG, ylabel=r"$I = \int_0^S H(p(s)\,|\,p_S)\,\mathrm{d}s$")
         _plain_ticks(axes)
         axes.legend(loc="upper center")
     return figure
@@ -82,28 +73,23 @@ def plot_rates(dataset: xr.Dataset, *, runs: xr.Dataset | None = None) -> Figure
         at many noises, which costs little.
     runs : xarray.Dataset, optional
         Where the runs come from, if not from the same Dataset.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     check_dataset("dataset", dataset)
     if "gap" not in dataset and "branch_rate" not in dataset:
         _require([dataset], "gap", "gap")
-    with paper_style():
-        figure = new_figure(PAGE, 3.6)
+    with drawing(PAGE, 3.6) as figure:
         axes = figure.subplots()
         theory = _theory(dataset)
         _draw_bounds(axes, theory)
         _draw_branches(axes, dataset)
         _draw_asymptotes(axes, theory)
         _draw_runs(axes, dataset if runs is None else runs)
-        axes.set_xscale("log")
-        axes.set_yscale("log")
-        axes.set_ylim(*_limits(dataset))
-        axes.set_xlabel(r"noise $A$")
-        axes.set_ylabel(r"rate $-\mathrm{Re}\,\lambda$")
-        axes.set_title(_potential(dataset))
+        axes.set(
+            **_LOG_LOG,
+            ylim=_limits(dataset),
+            ylabel=r"rate $-\mathrm{Re}\,\lambda$",
+            title=_potential(dataset),
+        )
         _plain_ticks(axes)
         axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), borderaxespad=0.2)
     return figure
@@ -119,77 +105,24 @@ def plot_asymptotic_variance(dataset: xr.Dataset) -> Figure:
     ----------
     dataset : xarray.Dataset
         From `rate_versus_noise`, with the part "variance".
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     check_dataset("dataset", dataset)
     _require([dataset], "asymptotic_variance", "variance")
-    with paper_style():
-        figure = new_figure(COLUMN, 2.8)
+    looks = zip(cycle(_COLOURS), cycle(MARKERS), strict=True)
+    with drawing(COLUMN, 2.8) as figure:
         axes = figure.subplots()
-        colours = [COLOURS[name] for name in ("blue", "vermilion", "green", "orange")]
-        drawn = 0
         for name in dataset["function"].to_numpy():
             one = dataset.sel(function=name)
             if np.nanmax(one["asymptotic_variance"]) < _VANISHING:
                 continue
-            _draw_variance(
-                axes, one, str(name), colours[drawn % 4], _MARKERS[drawn % 6]
-            )
-            drawn += 1
-        axes.set_xscale("log")
-        axes.set_yscale("log")
-        axes.set_xlabel(r"noise $A$")
-        axes.set_ylabel(r"$-2\langle f, L^{-1} f\rangle \,/\, \mathrm{Var} f$")
-        axes.set_title(_potential(dataset))
-        if drawn:
-            axes.legend(loc="upper center", ncols=2)
-            bottom, top = axes.get_ylim()
-            axes.set_ylim(bottom, top * (top / bottom) ** 0.3)
+            _draw_variance(axes, one, str(name), *next(looks))
+        axes.set(
+            **_LOG_LOG,
+            ylabel=r"$-2\langle f, L^{-1} f\rangle \,/\, \mathrm{Var} f$",
+            title=_potential(dataset),
+        )
+        legend_with_room(axes)
         _plain_ticks(axes)
-    return figure
-
-
-def plot_spectrum(found: Spectrum) -> Figure:
-    """Eigenvalues in the complex plane, by sector, and where the gap ends.
-
-    Parameters
-    ----------
-    found : Spectrum
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-    """
-    check_spectrum(found)
-    with paper_style():
-        figure = new_figure(COLUMN, 2.8)
-        axes = figure.subplots()
-        names = list(dict.fromkeys(str(sector) for sector in found.sectors))
-        colours = [colour for name, colour in COLOURS.items() if name != "black"]
-        for place, name in enumerate(names):
-            own = [str(sector) == name for sector in found.sectors]
-            values = found.eigenvalues[np.array(own)]
-            axes.plot(
-                values.real, values.imag, linestyle="none", label=_sector_label(name),
-                marker=_MARKERS[place % len(_MARKERS)], markersize=4.5,
-                color=colours[place % len(colours)],
-            )  # fmt: skip
-        axes.plot(0, 0, "o", color=COLOURS["black"], markersize=4, label="stationary")
-        axes.axvline(-found.gap, color="0.6", linewidth=0.8, linestyle="--")
-        if found.essential is not None:
-            axes.axvline(found.essential, color="0.3", linewidth=0.8, linestyle=":",
-                         label="essential spectrum from here")  # fmt: skip
-        axes.set_xlabel(r"$\mathrm{Re}\,\lambda$")
-        axes.set_ylabel(r"$\mathrm{Im}\,\lambda$")
-        model = found.model
-        axes.set_title(f"$B$ = {model.potential.formula},  $A$ = {model.noise:g}")
-        bottom, top = axes.get_ylim()
-        if top - bottom < 1e-6:
-            axes.set_ylim(-0.5, 0.5)
-        axes.legend(loc="best")
     return figure
 
 
@@ -204,22 +137,19 @@ def _require(datasets: list[xr.Dataset], variable: str, part: str) -> None:
 
 
 def _draw_integral(axes: Axes, dataset: xr.Dataset, colour: str) -> None:
-    noise = dataset["noise"].to_numpy()
+    noise, title = dataset["noise"].to_numpy(), _potential(dataset)
     values = dataset["inverse_decay_rate"].to_numpy()
     error = dataset["inverse_decay_rate_error"].to_numpy()
     spread = [error, error + np.nan_to_num(dataset["tail_bound"].to_numpy())]
     axes.plot(noise, values, color=colour, linewidth=0.6, alpha=0.5)
     axes.errorbar(
-        noise, values, spread, color=colour, marker="o", markersize=3.5,
-        markerfacecolor="white", linestyle="none", elinewidth=0.9, capsize=1.5,
-        label=f"{_potential(dataset)}, grid",
+        noise, values, spread, color=colour, markersize=3.5, label=f"{title}, grid",
+        **_CIRCLES,
     )  # fmt: skip
     if "spectral_inverse_decay_rate" in dataset:
-        found = dataset["spectral_inverse_decay_rate"].to_numpy()
-        axes.plot(
-            noise, found, color=colour, marker="x", markersize=3.5, linestyle="none",
-            label=f"{_potential(dataset)}, spectral",
-        )  # fmt: skip
+        found = dataset["spectral_inverse_decay_rate"]
+        label = f"{title}, spectral"
+        axes.plot(noise, found, "x", color=colour, markersize=3.5, label=label)
     if np.isfinite(values).any():
         least = int(np.nanargmin(values))
         axes.plot(noise[least], values[least], "*", color=colour, markersize=8)
@@ -227,14 +157,10 @@ def _draw_integral(axes: Axes, dataset: xr.Dataset, colour: str) -> None:
 
 def _theory(dataset: xr.Dataset) -> dict[str, np.ndarray]:
     """Bounds and asymptotes at many noises, where the potential can be made again."""
-    from fpsolve._support.declared import declared
-    from fpsolve.model.potentials.dictionaries import potential_from_dict
     from fpsolve.studies.rates.dataset import theory_curves
 
-    noise = dataset["noise"].to_numpy()
-    try:
-        potential = potential_from_dict(declared(dataset.attrs)["potential"])
-    except ValueError:
+    noise, potential = dataset["noise"].to_numpy(), potential_of(dataset)
+    if potential is None:
         names = ("hypocoercive_bound", "averaging_bound", "small_noise_asymptote",
                  "large_noise_asymptote")  # fmt: skip
         return {"noise": noise, **{name: dataset[name].to_numpy() for name in names}}
@@ -250,12 +176,10 @@ def _draw_bounds(axes: Axes, theory: dict[str, np.ndarray]) -> None:
             noise, 1e-12, proven, color="0.88", linewidth=0, label="below proven bound"
         )
         axes.plot(noise, proven, color="0.5", linewidth=0.8)
-    averaging = theory["averaging_bound"]
-    if np.isfinite(averaging).any():
-        axes.plot(
-            noise, averaging, color=COLOURS["purple"], linewidth=0.9, linestyle="-.",
-            label="theorem 3.3, at most",
-        )  # fmt: skip
+    _draw_known(
+        axes, noise, theory["averaging_bound"], "-.", color=COLOURS["purple"],
+        linewidth=0.9, label="theorem 3.3, at most",
+    )  # fmt: skip
 
 
 def _draw_branches(axes: Axes, dataset: xr.Dataset) -> None:
@@ -264,48 +188,40 @@ def _draw_branches(axes: Axes, dataset: xr.Dataset) -> None:
         for sector, name in zip(dataset["sector"].to_numpy(), _SECTOR_COLOURS,
                                 strict=False):  # fmt: skip
             rates = dataset["branch_rate"].sel(sector=sector).to_numpy()
-            for mode, rate in enumerate(rates.T):
-                if np.isfinite(rate).any():
-                    label = _sector_label(str(sector)) if mode == 0 else None
-                    axes.plot(
-                        noise, rate, color=COLOURS[name], linewidth=1.1, label=label
-                    )
-        essential = dataset["essential_rate"].to_numpy()
-        if np.isfinite(essential).any():
-            axes.plot(noise, essential, ":", color=COLOURS["black"],
-                      label="essential spectrum")  # fmt: skip
+            labels = [sector_label(str(sector)), *[None] * (rates.shape[1] - 1)]
+            for rate, label in zip(rates.T, labels, strict=True):
+                looks = {"color": COLOURS[name], "linewidth": 1.1, "label": label}
+                _draw_known(axes, noise, rate, **looks)
+        _draw_known(axes, noise, dataset["essential_rate"], ":",
+                    color=COLOURS["black"], label="essential spectrum")  # fmt: skip
     if "gap" in dataset:
         axes.plot(
-            noise, dataset["gap"].to_numpy(), color=COLOURS["black"], linewidth=3.0,
-            alpha=0.25, solid_capstyle="round", label="spectral gap",
+            noise, dataset["gap"], color=COLOURS["black"], linewidth=3.0, alpha=0.25,
+            solid_capstyle="round", label="spectral gap",
         )  # fmt: skip
 
 
-def _sector_label(sector: str) -> str:
-    """The sector with its index in italics."""
-    return sector.replace("M = ", "$M$ = ")
-
-
 def _draw_asymptotes(axes: Axes, theory: dict[str, np.ndarray]) -> None:
-    noise = theory["noise"]
+    looks: dict[str, Any] = {"color": "0.2", "linewidth": 1.0}
     small, large = theory["small_noise_asymptote"], theory["large_noise_asymptote"]
-    names = (r"$A^2/2$", r"$\Lambda/A^2 + \ldots$")
-    for values, name, dash in zip(
-        (small, large), names, ("--", (0, (1, 1))), strict=True
-    ):
-        if np.isfinite(values).any():
-            axes.plot(noise, values, color="0.2", linewidth=1.0, linestyle=dash,
-                      label=name)  # fmt: skip
+    _draw_known(axes, theory["noise"], small, "--", label=r"$A^2/2$", **looks)
+    _draw_known(axes, theory["noise"], large, linestyle=(0, (1, 1)),
+                label=r"$\Lambda/A^2 + \ldots$", **looks)  # fmt: skip
+
+
+def _draw_known(axes: Axes, noise: Any, rates: Any, *form: str, **looks: Any) -> None:
+    """Draw a curve, unless it is nowhere known."""
+    if np.isfinite(rates).any():
+        axes.plot(noise, rates, *form, **looks)
 
 
 def _draw_runs(axes: Axes, dataset: xr.Dataset) -> None:
     if "entropy_rate" not in dataset:
         return
+    rate, error = dataset["entropy_rate"] / 2, dataset["entropy_rate_error"] / 2
     axes.errorbar(
-        dataset["noise"].to_numpy(), dataset["entropy_rate"].to_numpy() / 2,
-        dataset["entropy_rate_error"].to_numpy() / 2, color=COLOURS["black"],
-        marker="o", markersize=4, markerfacecolor="white", linestyle="none",
-        elinewidth=0.9, capsize=1.5, zorder=5, label="half the decay rate of $H$, runs",
+        dataset["noise"], rate, error, color=COLOURS["black"], markersize=4, zorder=5,
+        label="half the decay rate of $H$, runs", **_CIRCLES,
     )  # fmt: skip
 
 
@@ -326,7 +242,7 @@ def _draw_variance(
     axes.errorbar(
         noise, dataset["asymptotic_variance"].to_numpy(),
         dataset["asymptotic_variance_error"].to_numpy(), color=colour, marker=marker,
-        markersize=3.5, linestyle="none", elinewidth=0.8, label=_symbol(name),
+        markersize=3.5, linestyle="none", elinewidth=0.8, label=symbol(name),
     )  # fmt: skip
     fine = np.geomspace(noise.min(), noise.max(), 200)
     shape = float(dataset["shape_small"]) / fine + float(dataset["shape_large"]) * fine
@@ -338,14 +254,5 @@ def _potential(dataset: xr.Dataset) -> str:
 
 
 def _plain_ticks(axes: Axes) -> None:
-    """Numbers like 0.2 and 30 along both axes instead of powers of ten."""
-    from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
-
     for axis in (axes.xaxis, axes.yaxis):
-        low, high = axis.get_view_interval()
-        digits = [1, 2, 5] if high < 200 * low else [1]
-        candidates = np.outer(10.0 ** np.arange(-9, 10), digits).ravel()
-        inside = (candidates >= low) & (candidates <= high)
-        axis.set_major_locator(FixedLocator(candidates[inside].tolist()))
-        axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-        axis.set_minor_locator(NullLocator())
+        plain_numbers(axis, (1, 2, 5), 200)

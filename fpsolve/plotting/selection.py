@@ -1,4 +1,4 @@
-"""Which saved arclengths a figure shows."""
+"""What a figure shows: a result of the right kind, and which arclengths of it."""
 
 from __future__ import annotations
 
@@ -8,42 +8,56 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fpsolve._support.checks import check_kind, shown
+from fpsolve._support.declared import declared
 from fpsolve.density.solution import Solution
 from fpsolve.evolution.schedule import checked_stops
+from fpsolve.model.potentials.dictionaries import potential_from_dict
+from fpsolve.model.potentials.potential import Potential
 from fpsolve.paths.result import Paths
 
 if TYPE_CHECKING:
+    import xarray as xr
+
     from fpsolve.reduced.hydrodynamic.solution import HydrodynamicSolution
 
 __all__ = [
     "check_dataset",
     "check_datasets",
-    "check_energy_solution",
-    "check_hydrodynamic_solution",
     "check_paths",
-    "check_process",
     "check_solution",
-    "check_spectrum",
+    "evenly",
+    "potential_of",
     "select_s",
 ]
+
+
+def evenly(count: int, at_most: int) -> list[int]:
+    """Return at most so many places from first to last of `count`."""
+    places = np.linspace(0, count - 1, min(count, at_most))
+    return [int(place) for place in places.round()]
 
 
 def select_s(
     solution: Solution | HydrodynamicSolution, at: Iterable[float] | None, at_most: int
 ) -> list[float]:
     """Return the arclengths to show: those asked for, or saved ones evenly thinned."""
-    if at is not None:
-        chosen = checked_stops(at, "at")
-    else:
-        n_saved = len(solution.saved_s)
-        steps = np.linspace(0, n_saved - 1, min(n_saved, at_most)).round().astype(int)
-        chosen = [float(s) for s in solution.saved_s[steps]]
+    places = evenly(len(solution.saved_s), at_most)
+    thinned = [float(solution.saved_s[place]) for place in places]
+    chosen = thinned if at is None else checked_stops(at, "at")
     if not chosen:
         raise ValueError(
             "`solution` must hold a saved density to show, got none; name arclengths "
             "in `save_at` of the run."
         )
     return chosen
+
+
+def potential_of(dataset: xr.Dataset) -> Potential | None:
+    """Return the potential of a study; None if it was a user's own."""
+    try:
+        return potential_from_dict(declared(dataset.attrs)["potential"])
+    except ValueError:
+        return None
 
 
 def check_solution(solution: Any) -> None:
@@ -76,33 +90,3 @@ def check_datasets(datasets: Any) -> list[Any]:
             "are what a study returns."
         )
     return listed
-
-
-def check_process(process: Any) -> None:
-    """Raise TypeError unless it is an energy process."""
-    from fpsolve.reduced.energy.process import EnergyProcess
-
-    check_kind("process", process, EnergyProcess, "EnergyProcess(potential, noise)")
-
-
-def check_energy_solution(solution: Any) -> None:
-    """Raise TypeError unless it is a law of the energy."""
-    from fpsolve.reduced.energy.solution import EnergySolution
-
-    check_kind("solution", solution, EnergySolution, "see EnergyProcess.solve")
-
-
-def check_hydrodynamic_solution(solution: Any) -> None:
-    """Raise TypeError unless it is a solution of the hydrodynamic limit."""
-    from fpsolve.reduced.hydrodynamic.solution import HydrodynamicSolution
-
-    check_kind(
-        "solution", solution, HydrodynamicSolution, "see HydrodynamicLimit.solve"
-    )
-
-
-def check_spectrum(found: Any) -> None:
-    """Raise TypeError unless it is a spectrum of the generator."""
-    from fpsolve.spectral.eigen.spectrum import Spectrum
-
-    check_kind("found", found, Spectrum, "it is what `spectrum` returns")

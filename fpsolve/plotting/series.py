@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fpsolve._support.checks import check_kind
-from fpsolve.plotting.style import COLOURS, PAGE, new_figure, paper_style, parameters_of
+from fpsolve.plotting.selection import evenly
+from fpsolve.plotting.style import COLOURS, LINES, PAGE, drawing, parameters
 from fpsolve.reduced.energy.sampling import EnergyPaths
 from fpsolve.reduced.hydrodynamic.sampling import HydrodynamicPaths
 from fpsolve.spectral.evolution.solution import SpectralSolution
@@ -33,25 +34,19 @@ def plot_spectral(solution: SpectralSolution) -> Figure:
     Parameters
     ----------
     solution : SpectralSolution
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     check_kind("solution", solution, SpectralSolution, "see `spectral_solve`")
-    with paper_style():
-        figure = new_figure(PAGE, 2.8)
+    with drawing(PAGE, 2.8, parameters(solution)) as figure:
         entropy, means = figure.subplots(1, 2)
         _draw(entropy, solution.s, solution.relative_entropy,
-              solution.errors["relative_entropy"], "blue", "$H$")  # fmt: skip
+              solution.errors["relative_entropy"], COLOURS["blue"], "$H$")  # fmt: skip
         if (solution.relative_entropy > 0).all():
             entropy.set_yscale("log")
         entropy.set_ylabel(r"$H(p\,|\,p_S)$")
-        for (name, label), colour in zip(_MEANS.items(), _colours(), strict=False):
+        for (name, label), colour in zip(_MEANS.items(), LINES, strict=False):
             _draw(means, solution.s, solution.series[name], solution.errors[name],
                   colour, label)  # fmt: skip
         means.legend(loc="best")
-        figure.suptitle(parameters_of(solution.model))
     return figure
 
 
@@ -61,17 +56,12 @@ def plot_hydrodynamic_paths(paths: HydrodynamicPaths) -> Figure:
     Parameters
     ----------
     paths : HydrodynamicPaths
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     check_kind("paths", paths, HydrodynamicPaths, "see HydrodynamicLimit.sample")
     (mean, mean_error), (spread, spread_error) = paths.mean(), paths.covariance()
-    with paper_style():
-        figure = new_figure(PAGE, 2.8)
+    with drawing(PAGE, 2.8, parameters(paths)) as figure:
         left, right = figure.subplots(1, 2)
-        for axis, colour in zip((0, 1), _colours(), strict=False):
+        for axis, colour in zip((0, 1), LINES, strict=False):
             name = rf"\xi_{axis + 1}"
             _draw(left, paths.s, mean[:, axis], mean_error[:, axis], colour,
                   rf"$E\,{name}$")  # fmt: skip
@@ -79,7 +69,6 @@ def plot_hydrodynamic_paths(paths: HydrodynamicPaths) -> Figure:
                   colour, rf"$\mathrm{{Var}}\,{name}$")  # fmt: skip
         left.legend(loc="best")
         right.legend(loc="best")
-        figure.suptitle(parameters_of(paths.model))
     return figure
 
 
@@ -89,36 +78,24 @@ def plot_energy_paths(paths: EnergyPaths) -> Figure:
     Parameters
     ----------
     paths : EnergyPaths
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     check_kind("paths", paths, EnergyPaths, "see EnergyProcess.sample")
     process = paths.process
     largest = float(np.abs(paths.g).max()) if process is None else process.g_max
-    with paper_style():
-        figure = new_figure(PAGE, 2.8)
+    with drawing(PAGE, 2.8) as figure:
         axes = figure.subplots()
-        n = min(_MOST_LAWS, paths.s.size)
-        rows = np.unique(np.linspace(0, paths.s.size - 1, n).round().astype(int))
-        for row, colour in zip(rows, _colours(), strict=False):
+        rows = evenly(paths.s.size, _MOST_LAWS)
+        for row, colour in zip(rows, LINES, strict=False):
             counts, ends = np.histogram(paths.g[row], _BINS, (-largest, largest), True)
-            axes.stairs(counts, ends, color=COLOURS[colour],
-                        label=f"$s = {paths.s[row]:g}$")  # fmt: skip
+            axes.stairs(counts, ends, color=colour, label=f"$s = {paths.s[row]:g}$")
         if process is not None:
             g = process.g_max * np.sin(np.linspace(0.02, np.pi / 2, 200)) ** 2
             law = 0.5 * process.stationary_density(g)
             for sign in (-1, 1):
                 axes.plot(sign * g, law, "--", color="0.4", linewidth=0.8)
-        axes.set_xlabel("$G$")
-        axes.set_ylabel("density")
+        axes.set(xlabel="$G$", ylabel="density")
         axes.legend(loc="best")
     return figure
-
-
-def _colours() -> list[str]:
-    return [name for name in COLOURS if name != "black"]
 
 
 def _draw(
@@ -129,6 +106,6 @@ def _draw(
     colour: str,
     label: str,
 ) -> None:
-    axes.errorbar(s, values, yerr=errors, color=COLOURS[colour], label=label,
+    axes.errorbar(s, values, yerr=errors, color=colour, label=label,
                   marker=".", capsize=2.0)  # fmt: skip
     axes.set_xlabel("$s$")

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fpsolve.plotting.logarithmic import noise_ticks
 from fpsolve.plotting.selection import check_dataset, check_datasets
-from fpsolve.plotting.style import COLOURS, COLUMN, PAGE, new_figure, paper_style
+from fpsolve.plotting.style import COLOURS, COLUMN, PAGE, drawing
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -32,19 +33,12 @@ def plot_small_noise(datasets: xr.Dataset | Iterable[xr.Dataset]) -> Figure:
     ----------
     datasets : xarray.Dataset or iterable of them
         From `fpsolve.studies.limits.small_noise.small_noise_limit`.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     listed = check_datasets(datasets)
-    with paper_style():
-        figure = new_figure(COLUMN if len(listed) == 1 else PAGE, 3.1)
+    with drawing(COLUMN if len(listed) == 1 else PAGE, 3.1) as figure:
         panels = figure.subplots(1, len(listed), sharey=True, squeeze=False)[0]
         # Panels share their limits.
-        distances = np.concatenate(
-            [one["distance"].to_numpy().ravel() for one in listed]
-        )
+        distances = np.concatenate([np.ravel(one["distance"]) for one in listed])
         limits = 0.5 * np.nanmin(distances), 2.0 * np.nanmax(distances)
         for axes, dataset in zip(panels, listed, strict=True):
             _draw_distances(axes, dataset, limits)
@@ -64,15 +58,14 @@ def _draw_distances(
                   markersize=4, label=belt)  # fmt: skip
         axes.plot(one["noise"], one["paths_distance"], "x", color=colour, markersize=4)
     still = dataset.isel(belt_speed_scale=0)
-    axes.set_xscale("log")
-    axes.set_yscale("log")
+    axes.set(xscale="log", yscale="log", xlabel=r"noise $A$")
     axes.fill_between(still["noise"], limits[0], still["distance_error"],
                       color="0.88", label="error of the cells")  # fmt: skip
     axes.plot(still["noise"], still["paths_distance_by_chance"], ":", color="0.4",
               label="paths by chance")  # fmt: skip
     _draw_slope(axes, still)
     axes.set_ylim(limits)
-    _noise_axis(axes, dataset["noise"].to_numpy())
+    noise_ticks(axes, dataset["noise"].to_numpy())
 
 
 def _draw_slope(axes: Axes, one: xr.Dataset) -> None:
@@ -91,14 +84,9 @@ def plot_small_noise_spectrum(dataset: xr.Dataset) -> Figure:
     ----------
     dataset : xarray.Dataset
         From `small_noise_spectrum`.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     check_dataset("dataset", dataset)
-    with paper_style():
-        figure = new_figure(COLUMN, 2.6)
+    with drawing(COLUMN, 2.6) as figure:
         axes = figure.subplots()
         for place, family in enumerate(dataset["family"].to_numpy()):
             one, colour = dataset.isel(family=place), COLOURS[_COLOURS[place]]
@@ -111,15 +99,8 @@ def plot_small_noise_spectrum(dataset: xr.Dataset) -> Figure:
                 xycoords=("axes fraction", "data"), textcoords="offset points",
                 fontsize=7, color=colour,
             )  # fmt: skip
-        axes.set_ylim(0.0, 1.3 * float(dataset["limit"].max()))
-        axes.set_ylabel(r"rate$\,/A^2$")
-        _noise_axis(axes, dataset["noise"].to_numpy())
+        highest = 1.3 * float(dataset["limit"].max())
+        axes.set(ylim=(0.0, highest), xlabel=r"noise $A$", ylabel=r"rate$\,/A^2$")
+        noise_ticks(axes, dataset["noise"].to_numpy())
         axes.legend(loc="center right")
     return figure
-
-
-def _noise_axis(axes: Any, noises: np.ndarray) -> None:
-    """Ticks at the noises themselves."""
-    axes.set_xlabel(r"noise $A$")
-    axes.set_xticks(noises, [f"{noise:g}" for noise in noises])
-    axes.minorticks_off()

@@ -2,20 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fpsolve._support.checks import check_kind
 from fpsolve.density.steady_state import SteadyState
-from fpsolve.plotting.maps import (
-    add_colour_bar,
-    colour_scale,
-    draw_map,
-    show_region,
-    visible_region,
-)
-from fpsolve.plotting.style import COLOURS, PAGE, new_figure, paper_style, parameters_of
+from fpsolve.plotting.maps import draw_plane
+from fpsolve.plotting.style import COLOURS, PAGE, drawing, parameters
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -32,26 +26,13 @@ def plot_steady_state(result: SteadyState) -> Figure:
     Parameters
     ----------
     result : SteadyState
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     check_kind("result", result, SteadyState, "it is what `steady_state` returns")
-    shown: Any = result
-    with paper_style():
-        figure = new_figure(PAGE, 3.0)
+    with drawing(PAGE, 3.0, parameters(result)) as figure:
         plane, angle = figure.subplots(1, 2, width_ratios=(1.2, 1.0))
-        density = result.marginal("xi")
-        image = draw_map(plane, shown, density, colour_scale([density]))
-        show_region(plane, visible_region(shown, [density]))
-        add_colour_bar(figure, image, [plane])
-        plane.set_xlabel(r"$\xi_1$")
-        plane.set_ylabel(r"$\xi_2$")
+        draw_plane(plane, result.grid, result.model, [result.marginal("xi")])
         angle.plot(result.grid.alpha, result.marginal("alpha"), color=COLOURS["blue"])
         angle.axhline(0.5 / np.pi, color="0.5", linewidth=0.8, linestyle="--")
-        angle.set_xlabel(r"$\alpha$")
-        angle.set_ylabel(r"$\int p\;\mathrm{d}\xi$")
+        angle.set(xlabel=r"$\alpha$", ylabel=r"$\int p\;\mathrm{d}\xi$")
         angle.set_ylim(bottom=0.0)
-        figure.suptitle(parameters_of(result.model))
     return figure

@@ -9,25 +9,25 @@ from contextvars import ContextVar
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
-from fpsolve.density.solution import Solution
-
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-
-    from fpsolve.model.laydown import LayDownModel
 
 __all__ = [
     "COLOURS",
     "COLUMN",
     "DENSITY_MAP",
+    "LINES",
+    "MARKERS",
     "PAGE",
     "RESOLUTION",
+    "drawing",
+    "formula",
     "legend_above",
     "new_figure",
     "paper_style",
     "parameters",
-    "parameters_of",
+    "show_frame",
 ]
 
 # Widths in inches of one column and of a page of a journal.
@@ -46,6 +46,9 @@ COLOURS = {
     "sky": "#56B4E9",
     "purple": "#CC79A7",
 }
+# Of lines and of points, in the order in which they are taken.
+LINES = [colour for name, colour in COLOURS.items() if name != "black"]
+MARKERS = "osD^vP"
 # Perceptually uniform, and safe for all kinds of colour vision.
 DENSITY_MAP = "viridis"
 
@@ -101,30 +104,41 @@ def new_figure(width: float, height: float) -> Figure:
     return figure
 
 
-def parameters(solution: Solution) -> str:
-    """Return potential, noise and curve, for the title of a figure.
+@contextmanager
+def drawing(width: float, height: float, title: str = "") -> Iterator[Figure]:
+    """Give an empty figure to draw on in the style of all; its title comes last."""
+    with paper_style():
+        figure = new_figure(width, height)
+        yield figure
+        if title:
+            figure.suptitle(title)
+
+
+def parameters(owner: Any) -> str:
+    """Return potential, noise and curve of what has a model, for the title of a figure.
 
     A curve with a long formula comes on a line of its own.
     """
-    return parameters_of(solution.model)
-
-
-def parameters_of(model: LayDownModel | None) -> str:
-    """Return the same of a model; None if it could not be read back."""
+    model = getattr(owner, "model", None)
+    # It could not be read back.
     if model is None:
         return r"$B$ from the user's own functions"
-    potential = _formula(model.potential.latex, model.potential.formula)
+    potential = formula(model.potential)
     title = rf"$B =$ {potential},  $A = {model.noise:g}$"
     if model.curve.fixed:
         return title
     if model.curve.autonomous:
         return rf"{title},  $v = {model.belt_speed:g}$"
-    curve = _formula(model.curve.latex, model.curve.formula)
-    return f"{title},\n$\\gamma(s) =$ {curve}"
+    return f"{title},\n$\\gamma(s) =$ {formula(model.curve)}"
+
+
+def formula(shown: Any) -> str:
+    """Return the formula of a potential or of a curve."""
+    return _readable(shown.latex, shown.formula)
 
 
 @cache
-def _formula(latex: str, plain: str) -> str:
+def _readable(latex: str, plain: str) -> str:
     """Return the formula for matplotlib, which knows only a part of LaTeX."""
     from matplotlib.mathtext import MathTextParser
 
@@ -141,3 +155,9 @@ def legend_above(axes: Axes, share: float) -> None:
     bottom, top = axes.get_ylim()
     axes.set_ylim(bottom, bottom + (top - bottom) / (1 - share))
     axes.legend(loc="upper right", borderaxespad=0.2)
+
+
+def show_frame(axes: Axes) -> None:
+    """Draw the sides of a panel that curves leave open."""
+    for side in ("top", "right"):
+        axes.spines[side].set_visible(True)

@@ -88,7 +88,7 @@ def test_without_an_equilibrium_there_are_no_contours(free_solution):
 
 def test_the_window_holds_all_but_a_thousandth_of_every_map(solution):
     marginals = [solution.marginal("xi", s) for s in solution.saved_s]
-    width1, width2 = maps.visible_region(solution, marginals)
+    width1, width2 = maps.visible_region(solution.grid, marginals)
     xi1, xi2 = solution.grid.plane()
     inside = (abs(xi1) <= width1) & (abs(xi2) <= width2)
     for values in marginals:

@@ -24,8 +24,8 @@ from fpsolve.plotting.rates import (
     plot_asymptotic_variance,
     plot_inverse_decay_rate,
     plot_rates,
-    plot_spectrum,
 )
+from fpsolve.plotting.spectrum import plot_spectrum
 from fpsolve.spectral.bases.sectors import Truncation
 from fpsolve.spectral.eigen.spectrum import spectrum
 from fpsolve.studies.observables import default_observables
