@@ -6,19 +6,15 @@ from typing import TYPE_CHECKING
 
 from fpsolve._support.declared import declared
 from fpsolve.pages.blocks import Block, Facts, Paragraph, Part, Section, Table
-from fpsolve.pages.equations import fokker_planck, mathml, potential_equation
+from fpsolve.pages.equations import fokker_planck, mathml
 from fpsolve.pages.figures import drawings
-from fpsolve.pages.studies import potential_of, versions_part
+from fpsolve.pages.numbers import grouped
+from fpsolve.pages.studies import listed, potential_equations, versions_part
 
 if TYPE_CHECKING:
     import xarray as xr
 
 __all__ = ["section"]
-
-_CAPTION = (
-    "Error of one average against s, and the limits of s times squared error against "
-    "the noise."
-)
 
 
 def section(dataset: xr.Dataset, source: str) -> Section:
@@ -27,34 +23,28 @@ def section(dataset: xr.Dataset, source: str) -> Section:
     s = dataset["s"].to_numpy()
     items = [
         ("potential", f"B = {about['formula']}, belt at rest"),
-        ("noises", ", ".join(f"{float(noise):g}" for noise in dataset["noise"])),
-        ("paths", f"{about['n_paths']:,} of each noise".replace(",", " ")),
+        ("noises", listed(dataset["noise"])),
+        ("paths", f"{grouped(about['n_paths'])} of each noise"),
         ("arclengths", f"{s.size}, from {s[0]:g} to {s[-1]:g}"),
     ]
     if "ds" in dataset:
-        steps = ", ".join(f"{float(ds):.4g}" for ds in dataset["ds"])
-        items.append(("step ds", steps))
-    alt = "Curves of errors against arclength and of variances against noise"
-    figures = drawings(dataset, {"averages": (_CAPTION, alt)})
+        items.append(("step ds", listed(dataset["ds"], ".4g")))
     nothing = Paragraph("There is no figure: a curve needs two noises.")
-    parts = [
+    return Section("Averages along paths", source, [
         Part("Equation", _equations(dataset)),
         Part("Parameters", [Facts(items)]),
         Part("Averages", [_said(), _table(dataset)]),
-        Part("Figure", figures or [nothing]),
+        Part("Figure", drawings(dataset) or [nothing]),
         versions_part(dataset),
-    ]
-    return Section("Averages along paths", source, parts)
+    ])  # fmt: skip
 
 
 def _equations(dataset: xr.Dataset) -> list[Block]:
-    potential = potential_of(dataset)
-    known = [] if potential is None else [potential_equation(potential)]
     error = mathml(
         r"e(s) = \left\| \frac{1}{s}\int_0^s f\,dt - E f \right\|",
         "e(s) = ‖s⁻¹∫₀ˢ f dt − E f‖",
     )
-    return [fokker_planck(), *known, error]
+    return [fokker_planck(), *potential_equations(dataset), error]
 
 
 def _said() -> Paragraph:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import ClassVar
 
 __all__ = [
     "Block",
@@ -21,16 +20,18 @@ __all__ = [
 
 
 class Block:
-    """One element of a page; `kind` names the macro of the template that draws it."""
+    """One element of a page."""
 
-    kind: ClassVar[str]
+    @property
+    def kind(self) -> str:
+        """Name of the macro of the template that draws it."""
+        return type(self).__name__.lower()
 
 
 @dataclass(frozen=True)
 class Paragraph(Block):
     """A paragraph of plain text."""
 
-    kind: ClassVar[str] = "paragraph"
     text: str
 
 
@@ -38,7 +39,6 @@ class Paragraph(Block):
 class Notice(Block):
     """A sentence that must be seen: "good", "warning" or "bad"."""
 
-    kind: ClassVar[str] = "notice"
     text: str
     tone: str
 
@@ -50,7 +50,6 @@ class Equation(Block):
     Without MathML the plain text is shown.
     """
 
-    kind: ClassVar[str] = "equation"
     mathml: str | None
     plain: str
 
@@ -59,7 +58,6 @@ class Equation(Block):
 class Facts(Block):
     """Names with their values."""
 
-    kind: ClassVar[str] = "facts"
     items: Sequence[tuple[str, str]]
 
 
@@ -67,7 +65,6 @@ class Facts(Block):
 class Table(Block):
     """Rows of text under headings; the columns in `words` hold words, not numbers."""
 
-    kind: ClassVar[str] = "table"
     caption: str
     headings: Sequence[str]
     rows: Sequence[Sequence[str]]
@@ -79,7 +76,6 @@ class Table(Block):
 class Figure(Block):
     """A picture as a data URL, `width` CSS pixels wide where there is room."""
 
-    kind: ClassVar[str] = "figure"
     source: str
     width: int
     caption: str
@@ -90,7 +86,6 @@ class Figure(Block):
 class Listing(Block):
     """Text as it is, folded under a summary."""
 
-    kind: ClassVar[str] = "listing"
     summary: str
     text: str
 
@@ -105,7 +100,7 @@ class Part:
 
 @dataclass(frozen=True)
 class Section:
-    """All about one result: what it is, where it comes from, and its parts."""
+    """All about one result: what it is, its file, and its parts; empty ones go."""
 
     title: str
     source: str

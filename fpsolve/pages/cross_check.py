@@ -2,18 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from fpsolve.pages.blocks import (
-    Block,
-    Facts,
-    Notice,
-    Paragraph,
-    Part,
-    Section,
-    Table,
-)
+from fpsolve.pages.blocks import Block, Facts, Notice, Paragraph, Part, Section, Table
 from fpsolve.pages.figures import drawings
+from fpsolve.pages.numbers import grouped
 from fpsolve.pages.origin import provenance_part
 from fpsolve.pages.settings import grid_text, model_facts, model_or_unread
 
@@ -32,12 +25,6 @@ HEADINGS = (
     "tests failed",
 )
 
-_FIGURE = (
-    "Marginals of the density (lines) and of the paths (points); beneath, the "
-    "deviation of every cell in standard deviations.",
-    "Marginals of density and paths with their deviations",
-)
-
 
 def section(check: CrossCheck, source: str) -> Section:
     """Return the section of a page about a cross-check."""
@@ -45,17 +32,14 @@ def section(check: CrossCheck, source: str) -> Section:
 
     tone = "good" if check.agrees else "bad"
     equations = model_or_unread(check.model, check.provenance)
-    parts = [
+    return Section("Density against paths", source, [
         Part("Summary", [Notice(verdict(check), tone), *_words(check)]),
         Part("Equation", equations),
         Part("Parameters", [Facts(_parameters(check))]),
         Part("Tests", [_summary(check), _moments(check)]),
-        Part("Figure", drawings(check, {"check": _FIGURE})),
+        Part("Figure", drawings(check)),
         provenance_part(check.provenance, call=check.call),
-    ]
-    return Section(
-        "Density against paths", source, [part for part in parts if part.blocks]
-    )
+    ])  # fmt: skip
 
 
 def summary_row(check: CrossCheck, s: float) -> tuple[str, ...]:
@@ -91,14 +75,11 @@ def _parameters(check: CrossCheck) -> list[tuple[str, str]]:
         *model_facts(model),
         ("grid", grid_text(check.grid)),
         ("density", f"{solver['name']}, ds = {solver['ds']:.4g}{also}"),
-        ("paths", f"{check.n_paths:,}".replace(",", " ") + _sampler(sampler)),
+        ("paths", f"{grouped(check.n_paths)} by {sampler['method']}, "
+                  f"ds = {sampler['ds']:.4g}"),
         ("seed", str(sampler["seed"])),
         ("false alarm", f"probability at most {check.false_alarm:g}"),
-    ]
-
-
-def _sampler(sampler: dict[str, Any]) -> str:
-    return f" by {sampler['method']}, ds = {sampler['ds']:.4g}"
+    ]  # fmt: skip
 
 
 def _summary(check: CrossCheck) -> Table:

@@ -5,11 +5,13 @@ from __future__ import annotations
 import html
 from xml.etree import ElementTree
 
+from fpsolve.model.curves.curve import Curve
 from fpsolve.model.laydown import LayDownModel
 from fpsolve.model.potentials.potential import Potential
 from fpsolve.pages.blocks import Equation
 
 __all__ = [
+    "curve_equations",
     "energy_equations",
     "fokker_planck",
     "mathml",
@@ -60,13 +62,18 @@ def mathml(latex: str, plain: str) -> Equation:
 def model_equations(model: LayDownModel) -> list[Equation]:
     """Return the Fokker-Planck equation of a model, its potential and its curve."""
     plain, _, _ = model.equation.partition(", B = ")
-    formulas = [mathml(model.latex, plain), potential_equation(model.potential)]
-    if not model.curve.autonomous:
-        curve = model.curve
-        formulas.append(
-            mathml(rf"\gamma(s) = {curve.latex}", f"γ(s) = {curve.formula}")
-        )
-    return formulas
+    return [
+        mathml(model.latex, plain),
+        potential_equation(model.potential),
+        *curve_equations(model.curve),
+    ]
+
+
+def curve_equations(curve: Curve) -> list[Equation]:
+    """Return γ(s) = …; nothing for a belt, which its speed says all about."""
+    if curve.autonomous:
+        return []
+    return [mathml(rf"\gamma(s) = {curve.latex}", f"γ(s) = {curve.formula}")]
 
 
 def potential_equation(potential: Potential) -> Equation:

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import base64
 import io
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from fpsolve.pages.blocks import Figure
+from fpsolve.pages.captions import CAPTIONS
+from fpsolve.results.kinds import kind_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Drawing
@@ -43,19 +45,13 @@ def embedded(draw: Callable[[], Drawing], caption: str, alt: str) -> Figure:
     return Figure(source, width, caption, alt)
 
 
-def drawings(result: Any, words: Mapping[str, tuple[str, str]]) -> list[Figure]:
-    """Return the figures that a result allows, as blocks.
-
-    Parameters
-    ----------
-    result : object
-    words : mapping
-        Caption and alternative text of each, by its name in `plotting.kinds`.
-    """
+def drawings(result: Any) -> list[Figure]:
+    """Return the figures that a result allows, with their captions, as blocks."""
     from fpsolve.plotting.files import possible_figures
 
+    kind = kind_of(result)
     return [
-        embedded(lambda draw=draw: draw(result), *words[name])  # type: ignore[misc]
+        embedded(lambda draw=draw: draw(result), *CAPTIONS[f"{kind}/{name}"])  # type: ignore[misc]
         for name, draw in possible_figures(result).items()
     ]
 

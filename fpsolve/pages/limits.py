@@ -6,23 +6,17 @@ import math
 from typing import TYPE_CHECKING
 
 from fpsolve._support.declared import declared
-from fpsolve.pages.blocks import (
-    Block,
-    Equation,
-    Facts,
-    Paragraph,
-    Part,
-    Section,
-    Table,
-)
-from fpsolve.pages.equations import (
-    energy_equations,
-    fokker_planck,
-    mathml,
-    potential_equation,
-)
+from fpsolve.pages.blocks import Block, Equation, Facts, Paragraph, Part, Section, Table
+from fpsolve.pages.equations import energy_equations, fokker_planck, mathml
 from fpsolve.pages.figures import drawings
-from fpsolve.pages.studies import cases_blocks, entries, potential_of, versions_part
+from fpsolve.pages.numbers import assigned
+from fpsolve.pages.studies import (
+    cases_blocks,
+    listed,
+    potential_equations,
+    start_of,
+    versions_part,
+)
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -43,29 +37,18 @@ _SMALL_NOTE = (
     "± cells: error of the cells of the grid, at most. Orders are in A². Paths: "
     "distance by paths, and what chance alone gives. A dash: not known."
 )
-_FIGURES = {
-    "distances": (
-        "Distances against the small parameter; thin lines: the slope that is derived.",
-        "Distances to the limit against the small parameter, logarithmic",
-    ),
-    "spectrum": (
-        "Slowest real rates of the sectors M = 0 over A²; dashed: the energy process.",
-        "Rates of both families against noise",
-    ),
-}
 
 
 def large_section(dataset: xr.Dataset, source: str) -> Section:
     """Return the section of a page about the limit of much noise."""
     about = declared(dataset.attrs)
-    start = dict(about["p0"])
     items = [
         ("potential", f"B = {about['formula']}"),
-        ("noises", _noises(dataset)),
+        ("noises", listed(dataset["noise"])),
         ("slow length s/A²", f"{about['slow_length']:g}"),
         ("belt speed", f"v = {about['belt_speed_scale']:g}/A², or "
                        f"v = {about['fixed_speed']:g} where it is fixed"),
-        ("start", f"{start.pop('kind')}({entries(start)})"),
+        ("start", start_of(about["p0"])),
         ("resolution", "quick" if about["quick"] else "full"),
     ]  # fmt: skip
     meanings = (
@@ -97,13 +80,11 @@ def large_section(dataset: xr.Dataset, source: str) -> Section:
 def small_section(dataset: xr.Dataset, source: str) -> Section:
     """Return the section of a page about the limit of little noise."""
     about = declared(dataset.attrs)
-    options = about["options"]
     items = [
         ("potential", f"B = {about['formula']}"),
-        ("noises", _noises(dataset)),
-        ("belt speeds v/A²",
-         ", ".join(f"{float(w):g}" for w in dataset["belt_speed_scale"])),
-        ("settings", entries(options)),
+        ("noises", listed(dataset["noise"])),
+        ("belt speeds v/A²", listed(dataset["belt_speed_scale"])),
+        ("settings", assigned(about["options"], ".4g")),
     ]  # fmt: skip
     table = _table(
         "Distance of the law of the energy G from that of the averaged equation (16).",
@@ -122,11 +103,9 @@ def small_section(dataset: xr.Dataset, source: str) -> Section:
 def spectrum_section(dataset: xr.Dataset, source: str) -> Section:
     """Return the section of a page about spectra in the limit of little noise."""
     about = declared(dataset.attrs)
-    potential = potential_of(dataset)
-    known = [] if potential is None else [potential_equation(potential)]
     items = [
         ("potential", f"B = {about['formula']}"),
-        ("noises", _noises(dataset)),
+        ("noises", listed(dataset["noise"])),
         ("tolerance", f"{about['tolerance']:g}"),
     ]
     table = _table(
@@ -136,14 +115,15 @@ def spectrum_section(dataset: xr.Dataset, source: str) -> Section:
         "dash: no basis that fits resolves it.",
         words=frozenset({0}),
     )  # fmt: skip
-    parts = [
-        Part("Equation and its limit", [fokker_planck(), *known, *energy_equations()]),
+    return Section("Spectrum in the limit of little noise", source, [
+        Part("Equation and its limit", [
+            fokker_planck(), *potential_equations(dataset), *energy_equations()
+        ]),
         Part("Parameters", [Facts(items)]),
         Part("Rates", [table]),
-        Part("Figure", drawings(dataset, _FIGURES)),
+        Part("Figure", drawings(dataset)),
         versions_part(dataset),
-    ]
-    return Section("Spectrum in the limit of little noise", source, parts)
+    ])  # fmt: skip
 
 
 def _rate_rows(dataset: xr.Dataset) -> list[dict[str, str]]:
@@ -151,9 +131,8 @@ def _rate_rows(dataset: xr.Dataset) -> list[dict[str, str]]:
     for family in dataset["family"].to_numpy():
         one = dataset.sel(family=family)
         row = {"family": str(family)}
-        for noise in dataset["noise"].to_numpy():
-            rate, error = (float(one[name].sel(noise=noise)) for name in
-                           ("rate", "rate_error"))  # fmt: skip
+        columns = (one[name].to_numpy() for name in ("noise", "rate", "rate_error"))
+        for noise, rate, error in zip(*columns, strict=True):
             known = math.isfinite(rate)
             row[f"A = {noise:g}"] = f"{rate:.6g} ± {error:.1g}" if known else "-"
         row["limit"] = f"{float(one['limit']):.6g} ± {float(one['limit_error']):.1g}"
@@ -169,9 +148,9 @@ def large_rows(dataset: xr.Dataset) -> list[dict[str, str]]:
         part, measure = str(quantity).split("/")
         row = {"quantity": f"{part}:\n  {measure}" if part != last else f"  {measure}"}
         last = part
-        for noise in dataset["noise"].to_numpy():
-            distance = float(one["distance"].sel(noise=noise))
-            error = float(one["distance_error"].sel(noise=noise))
+        names = ("noise", "distance", "distance_error")
+        columns = (one[name].to_numpy() for name in names)
+        for noise, distance, error in zip(*columns, strict=True):
             mark = "*" if distance < 3 * error else ""
             row[f"A = {noise:g}"] = _number(distance) + mark
         row["derived"] = _number(float(one["expected_order"]))
@@ -202,10 +181,6 @@ def _number(value: float) -> str:
     return f"{value:.2g}" if math.isfinite(value) else "-"
 
 
-def _noises(dataset: xr.Dataset) -> str:
-    return ", ".join(f"{float(noise):g}" for noise in dataset["noise"])
-
-
 def _table(
     caption: str,
     rows: list[dict[str, str]],
@@ -224,14 +199,13 @@ def _section(
     items: list[tuple[str, str]],
     distances: list[Block],
 ) -> Section:
-    potential = potential_of(dataset)
-    known = [] if potential is None else [potential_equation(potential)]
-    parts = [
+    return Section(title, source, [
         Part("Summary", cases_blocks(dataset)),
-        Part("Equation and its limit", [fokker_planck(), *known, *limit]),
+        Part("Equation and its limit", [
+            fokker_planck(), *potential_equations(dataset), *limit
+        ]),
         Part("Parameters", [Facts(items)]),
         Part("Distances", distances),
-        Part("Figures", drawings(dataset, _FIGURES)),
+        Part("Figures", drawings(dataset)),
         versions_part(dataset),
-    ]
-    return Section(title, source, [part for part in parts if part.blocks])
+    ])  # fmt: skip

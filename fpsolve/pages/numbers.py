@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from typing import Any
 
 import numpy as np
 
-__all__ = ["MOST_ROWS", "evenly", "formatted", "with_error"]
+__all__ = ["MOST_ROWS", "assigned", "evenly", "formatted", "grouped", "with_error"]
 
 MOST_DIGITS = 10
 # Rows that a table about a series has at most.
@@ -27,6 +28,24 @@ def with_error(value: float, error: float) -> str:
         return f"{value:.{digits}f}"
     last = f"{error:.{digits}f}" if error >= 1 else f"{error * 10**digits:.0f}"
     return f"{value:.{digits}f}({last})"
+
+
+def assigned(options: Mapping[str, Any], form: str = ".6g") -> str:
+    """Return names with their values on a line."""
+    return ", ".join(f"{name} = {_value(one, form)}" for name, one in options.items())
+
+
+def _value(value: Any, form: str) -> str:
+    if isinstance(value, Mapping):
+        return f"({assigned(value, form)})"
+    if isinstance(value, (list, tuple)):
+        return f"({', '.join(_value(one, form) for one in value)})"
+    return format(value, form) if isinstance(value, float) else str(value)
+
+
+def grouped(count: int) -> str:
+    """Return "1 000 000": thousands apart."""
+    return f"{count:,}".replace(",", " ")
 
 
 def formatted(values: Iterable[float], form: str) -> list[str]:

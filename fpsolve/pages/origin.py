@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from fpsolve.pages.blocks import Block, Facts, Listing, Notice, Paragraph, Part
+from fpsolve.pages.numbers import grouped
 
 if TYPE_CHECKING:
     from fpsolve.evolution.call import Call
@@ -92,7 +93,7 @@ def _when(provenance: Mapping[str, Any], steps: str) -> list[tuple[str, str]]:
         wall, cpu = provenance["wall_seconds"], provenance.get("cpu_seconds", 0.0)
         facts.append(("time", f"{wall:.4g} s ({cpu:.4g} s of CPU time)"))
     if "n_steps" in provenance:
-        facts.append((steps, f"{provenance['n_steps']:,}".replace(",", " ")))
+        facts.append((steps, grouped(provenance["n_steps"])))
     return facts
 
 

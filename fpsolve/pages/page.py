@@ -1,4 +1,4 @@
-"""The page itself: sections put into the template, written whole or not at all."""
+"""The page itself: a section about every result, put into the template."""
 
 from __future__ import annotations
 
@@ -8,17 +8,21 @@ from pathlib import Path
 from typing import Any
 
 from fpsolve._support.checks import check_path
+from fpsolve._support.netcdf import reported_damage
+from fpsolve.errors import FileFormatError
 from fpsolve.pages.blocks import Section
-from fpsolve.pages.reading import existing_file, section_of
+from fpsolve.pages.kinds import PAGES
+from fpsolve.results.kinds import kind_of, named
+from fpsolve.results.load import load, opened
 
-__all__ = ["html_page", "report", "report_text"]
+__all__ = ["html_page", "report", "report_text", "section_of"]
+
+# What a damaged or tampered file makes those raise who read what is in it.
+_DAMAGE = (ValueError, KeyError, TypeError, IndexError)
 
 
 def report(
-    results: Any,
-    path: str | os.PathLike[str],
-    *,
-    title: str | None = None,
+    results: Any, path: str | os.PathLike[str], *, title: str | None = None
 ) -> Path:
     """Write one self-contained HTML page about results: equation, numbers, figures.
 
@@ -97,6 +101,52 @@ def html_page(sections: Sequence[Section], title: str | None = None) -> str:
     )
 
 
+def section_of(result: Any) -> Section:
+    """Return the section about a file or a result of any kind.
+
+    Raises
+    ------
+    FileNotFoundError, FileFormatError
+        If a file does not exist, is damaged, or holds something else.
+    TypeError
+        If the result is of no known kind.
+    """
+    if isinstance(result, (str, os.PathLike)):
+        path = _existing_file(result)
+        found = load(path)
+        with reported_damage(path, *_DAMAGE):
+            return _written(found, path.name)
+    return _written(opened(_tables(result)), "")
+
+
+def _tables(result: Any) -> Any:
+    """Of an energy process, which is no result, a few coefficients and rates."""
+    from fpsolve.reduced.energy.process import EnergyProcess
+    from fpsolve.studies.energy_tables import tables_dataset
+
+    is_process = isinstance(result, EnergyProcess)
+    return tables_dataset(result, 10, 4) if is_process else result
+
+
+def _written(result: Any, source: str) -> Section:
+    section: Section = named(PAGES[kind_of(result)])(result, source)
+    return section
+
+
+def _existing_file(path: str | os.PathLike[str]) -> Path:
+    """Return the file that holds the numbers: for the JSON of a check its netCDF.
+
+    Both come from `fpsolve check`; the JSON holds a part of the other.
+    """
+    path = Path(path)
+    if path.suffix != ".json" or not path.is_file():
+        return path
+    numbers = path.with_suffix(".nc")
+    if not numbers.is_file():
+        raise FileFormatError(path, f"the numbers are in `{numbers}`, which is missing")
+    return numbers
+
+
 def _listed(results: Any) -> list[Any]:
     single = (
         isinstance(results, (str, os.PathLike))
@@ -111,7 +161,7 @@ def _listed(results: Any) -> list[Any]:
 
 def _check_place(results: Sequence[Any], path: Path) -> None:
     files = [one for one in results if isinstance(one, (str, os.PathLike))]
-    for file in {*map(Path, files), *map(existing_file, files)}:
+    for file in {*map(Path, files), *map(_existing_file, files)}:
         if os.path.realpath(file) == os.path.realpath(path):
             raise ValueError(
                 f"`path` must not be a result that is reported on, got `{path}`; name "

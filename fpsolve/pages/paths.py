@@ -4,18 +4,20 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from fpsolve.pages.blocks import Block, Facts, Figure, Paragraph, Part, Section, Table
-from fpsolve.pages.figures import embedded
-from fpsolve.pages.numbers import evenly, with_error
+from fpsolve.pages.blocks import Block, Facts, Paragraph, Part, Section, Table
+from fpsolve.pages.equations import curve_equations, mathml, potential_equation
+from fpsolve.pages.figures import drawings
+from fpsolve.pages.numbers import evenly, grouped, with_error
 from fpsolve.pages.origin import provenance_part, status_notice
 from fpsolve.pages.settings import (
-    curve_text,
     grid_text,
+    model_facts,
+    process_of,
     start_text,
+    units_part,
     unread_model,
     with_options,
 )
-from fpsolve.pages.units import process_of, units_part
 
 if TYPE_CHECKING:
     from fpsolve.model.laydown import LayDownModel
@@ -31,53 +33,28 @@ MOMENTS = {
     "Var ξ₂": "variance_xi2",
     "E cos α": "mean_cos_alpha",
 }
-_FIGURES = {
-    "ensemble": (
-        "Histograms at the last saved s, and moments with bands of one standard error; "
-        "white: contours that enclose 50 and 95 % of the equilibrium.",
-        "Histograms of deviation and angle, and moments of the paths",
-    ),
-    "trajectory": (
-        "One path: the deviation ξ in the plane, and the same over s.",
-        "A single path of the process",
-    ),
-    "fibre": (
-        "One fibre on the belt, as it is laid down.",
-        "A single fibre on the moving belt",
-    ),
-}
 
 
 def section(paths: Paths, source: str) -> Section:
     """Return the section of a page about paths."""
-    process = process_of(paths.provenance)
-    parts = [
+    return Section("Sampled paths", source, [
         Part("Summary", [status_notice(paths.status, paths.message)]),
         Part("Equation", _equations(paths)),
         Part("Parameters", [Facts(_parameters(paths))]),
-    ]
-    if process is not None:
-        parts.append(units_part(process))
-    parts += [
+        *units_part(process_of(paths.provenance)),
         Part("Moments", _moments(paths)),
-        Part("Figures", _figures(paths)),
+        Part("Figures", drawings(paths)),
         provenance_part(paths.provenance, steps="steps of all paths", call=paths.call),
-    ]
-    return Section("Sampled paths", source, parts)
+    ])  # fmt: skip
 
 
 def moment_rows(paths: Paths) -> list[list[str]]:
     """Arclength, then `MOMENTS` with their standard errors, at some saved s."""
     moments = paths.moments()
+    columns = [moments[name] for name in MOMENTS.values()]
     return [
         [f"{moments.s[row]:.4g}"]
-        + [
-            with_error(
-                float(moments.values[name][row]),
-                float(moments.standard_errors[name][row]),
-            )
-            for name in MOMENTS.values()
-        ]
+        + [with_error(float(mean[row]), float(error[row])) for mean, error in columns]
         for row in evenly(len(moments.s))
     ]
 
@@ -87,8 +64,6 @@ def _equations(paths: Paths) -> list[Block]:
     model: LayDownModel | None = paths.model
     if model is None:
         return unread_model(paths.provenance)
-    from fpsolve.pages.equations import mathml, potential_equation
-
     position, angle, *_ = model.process_equation.split(", ")
     curve = model.curve
     motion = r"\tau(\alpha)\,ds - d\gamma"
@@ -99,31 +74,20 @@ def _equations(paths: Paths) -> list[Block]:
         motion = rf"(\tau(\alpha) {sign} {abs(curve.speed):g}\,e_1)\,ds"
     noise = rf" + {model.noise:g}\,dW" if model.noise else ""
     turn = rf"d\alpha = -\nabla B(\xi)\cdot\tau^\perp(\alpha)\,ds{noise}"
-    equations = [
+    return [
         mathml(rf"d\xi = {motion}", position),
         mathml(turn, angle),
         potential_equation(model.potential),
+        *curve_equations(curve),
     ]
-    if not curve.autonomous:
-        equations.append(
-            mathml(rf"\gamma(s) = {curve.latex}", f"γ(s) = {curve.formula}")
-        )
-    return [*equations]
 
 
 def _parameters(paths: Paths) -> list[tuple[str, str]]:
     ensemble, schedule = paths.ensemble, paths.ensemble.schedule
-    model: LayDownModel | None = paths.model
-    items: list[tuple[str, str]] = []
-    if model is not None:
-        items += [
-            ("potential", f"B = {model.potential.formula}"),
-            ("noise", f"A = {model.noise:g}"),
-            ("reference curve", curve_text(model.curve)),
-        ]
-    items += [
+    items = [
+        *model_facts(paths.model),
         ("start", _start(paths)),
-        ("paths", f"{ensemble.n_paths:,}".replace(",", " ") + _kept(paths)),
+        ("paths", grouped(ensemble.n_paths) + _kept(paths)),
         ("seed", str(ensemble.seed)),
         ("method", ensemble.method),
         ("step", f"ds = {schedule.ds:g}, {schedule.n_steps} steps from "
@@ -161,12 +125,3 @@ def _moments(paths: Paths) -> list[Block]:
         "with the density and estimates both."
     )
     return [table, Paragraph(said)]
-
-
-def _figures(paths: Paths) -> list[Figure]:
-    from fpsolve.plotting.files import possible_figures
-
-    return [
-        embedded(lambda draw=draw: draw(paths), *_FIGURES[name])  # type: ignore[misc]
-        for name, draw in possible_figures(paths).items()
-    ]

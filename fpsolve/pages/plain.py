@@ -9,12 +9,18 @@ import numpy as np
 
 from fpsolve.evolution.series import long_name
 from fpsolve.pages.blocks import Block, Facts, Notice, Paragraph, Part, Section, Table
-from fpsolve.pages.equations import energy_equations, mathml, potential_equation
+from fpsolve.pages.equations import mathml
 from fpsolve.pages.figures import drawings
 from fpsolve.pages.limit_solutions import limit_equation
 from fpsolve.pages.numbers import evenly
 from fpsolve.pages.origin import provenance_part
-from fpsolve.pages.settings import grid_text, model_facts, model_or_unread, unread_model
+from fpsolve.pages.settings import (
+    grid_text,
+    model_facts,
+    model_or_unread,
+    process_equations,
+    process_facts,
+)
 
 if TYPE_CHECKING:
     from fpsolve.density.stationary.result import SteadyState
@@ -32,25 +38,6 @@ __all__ = [
 ]
 
 _STATIONARY = "∂ₛp = 0: the density that every start tends to."
-_FIGURES = {
-    "stationary": (
-        "Left: the density over the plane; white: contours of c exp(-B). Right: the "
-        "density of the angle; dashed: uniform.",
-        "Map of the stationary density and curve over the angle",
-    ),
-    "series": (
-        "Relative entropy and means over s, with estimated errors.",
-        "Curves of entropy and means",
-    ),
-    "moments": (
-        "Means and variances of the paths, with standard errors.",
-        "Curves of means and variances",
-    ),
-    "energies": (
-        "Histograms of the signed energy at saved s; dashed: the stationary density.",
-        "Histograms of the energy",
-    ),
-}
 
 
 def steady_state(result: SteadyState, source: str) -> Section:
@@ -151,17 +138,14 @@ def hydrodynamic_paths(paths: HydrodynamicPaths, source: str) -> Section:
 
 def energy_paths(paths: EnergyPaths, source: str) -> Section:
     """Return the section of a page about paths of the energy process."""
-    process, n_paths = paths.process, paths.g.shape[1]
-    equations: list[Block] = [*energy_equations()]
-    items = [("paths", str(n_paths)), ("arclengths", _span(paths.s)),
-             ("method", f"{paths.method}, ds = {paths.ds:.4g}"),
-             ("seed", str(paths.seed))]  # fmt: skip
-    if process is None:
-        equations += unread_model(paths.provenance.get("process_description", {}))
-    else:
-        equations.append(potential_equation(process.potential))
-        items = [("potential", f"B = {process.potential.formula}"),
-                 ("noise", f"A = {process.noise:g}"), *items]  # fmt: skip
+    n_paths = paths.g.shape[1]
+    items = [
+        *process_facts(paths.process),
+        ("paths", str(n_paths)),
+        ("arclengths", _span(paths.s)),
+        ("method", f"{paths.method}, ds = {paths.ds:.4g}"),
+        ("seed", str(paths.seed)),
+    ]
     rows = []
     for row in evenly(paths.s.size):
         cells = [f"{paths.s[row]:g}"]
@@ -171,17 +155,16 @@ def energy_paths(paths: EnergyPaths, source: str) -> Section:
         rows.append(tuple(cells))
     table = Table("Means with standard errors.", ("s", "E G", "E |G|"), rows)
     return _section("Paths of the energy process", source, paths, [
-        Part("Equation", equations),
+        Part("Equation", process_equations(paths.process, paths.provenance)),
         Part("Parameters", [Facts(items)]),
         Part("Means", [table]),
     ])  # fmt: skip
 
 
 def _section(title: str, source: str, result: Any, parts: list[Part]) -> Section:
-    figures = Part("Figure", drawings(result, _FIGURES))
+    figures = Part("Figure", drawings(result))
     origin = provenance_part(result.provenance, call=result.call)
-    every = [*parts, figures, origin]
-    return Section(title, source, [part for part in every if part.blocks])
+    return Section(title, source, [*parts, figures, origin])
 
 
 def _stationary(result: Any) -> list[Block]:

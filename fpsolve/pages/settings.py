@@ -3,22 +3,35 @@
 from __future__ import annotations
 
 import tomllib
+import warnings
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from fpsolve.pages.blocks import Block, Equation, Notice
+from fpsolve.pages.blocks import Block, Equation, Facts, Notice, Part
+from fpsolve.pages.equations import (
+    energy_equations,
+    model_equations,
+    potential_equation,
+)
+from fpsolve.pages.numbers import assigned
 
 if TYPE_CHECKING:
     from fpsolve.grids.phase_space import PhaseSpaceGrid
     from fpsolve.model.curves.curve import Curve
     from fpsolve.model.laydown import LayDownModel
+    from fpsolve.model.process import Process
+    from fpsolve.reduced.energy.process import EnergyProcess
 
 __all__ = [
     "curve_text",
     "grid_text",
     "model_facts",
     "model_or_unread",
+    "process_equations",
+    "process_facts",
+    "process_of",
     "start_text",
+    "units_part",
     "unread_model",
     "with_options",
 ]
@@ -45,15 +58,43 @@ def grid_text(grid: PhaseSpaceGrid) -> str:
 
 def start_text(provenance: Mapping[str, Any], section: str) -> str:
     """Return the start that the configuration describes; empty without one."""
-    tables = tomllib.loads(str(provenance.get("configuration", "")))
-    options = dict(tables.get(section, {}))
+    options = dict(_configuration(provenance).get(section, {}))
     return with_options(options.pop("kind"), options) if "kind" in options else ""
+
+
+def process_of(provenance: Mapping[str, Any]) -> Process | None:
+    """Return the process of the section [process] of a configuration, if any."""
+    section = _configuration(provenance).get("process")
+    if section is None:
+        return None
+    from fpsolve.model.process import Process
+
+    with warnings.catch_warnings():
+        # Said when the run was made.
+        warnings.simplefilter("ignore", UserWarning)
+        return Process(**section)
+
+
+def units_part(process: Process | None) -> list[Part]:
+    """Return what the dimensionless units of a process stand for, if there is one."""
+    if process is None:
+        return []
+    sigma1, sigma2 = 1e3 * process.sigma1, 1e3 * process.sigma2
+    belt_speed = process.speed_ratio * process.spinning_speed
+    items = [
+        ("throwing ranges", f"σ₁ = {sigma1:g} mm, σ₂ = {sigma2:g} mm"),
+        ("noise", f"{process.noise:g} m^-1/2, A = {process.model.noise:g}"),
+        ("spinning speed", f"{process.spinning_speed:g} m/s"),
+        ("belt speed", f"{belt_speed:g} m/s, v = {process.speed_ratio:g}"),
+        ("unit of length (ξ, s)", f"{1e3 * process.length:g} mm"),
+        ("unit of time (s)", f"{1e3 * process.time:g} ms to lay down one unit of s"),
+    ]
+    return [Part("Production process", [Facts(items)])]
 
 
 def with_options(name: str, options: Mapping[str, Any]) -> str:
     """Write a name with its options as a call."""
-    listed = ", ".join(f"{key} = {_plain(value)}" for key, value in options.items())
-    return f"{name}({listed})" if listed else name
+    return f"{name}({assigned(options)})" if options else name
 
 
 def model_facts(model: LayDownModel | None) -> list[tuple[str, str]]:
@@ -71,8 +112,6 @@ def model_or_unread(
     model: LayDownModel | None, provenance: Mapping[str, Any]
 ) -> list[Block]:
     """Return the equations of a model, or how one of a user's own described itself."""
-    from fpsolve.pages.equations import model_equations
-
     return [*model_equations(model)] if model else unread_model(provenance)
 
 
@@ -86,7 +125,25 @@ def unread_model(provenance: Mapping[str, Any]) -> list[Block]:
     return [Notice(said, "warning"), Equation(None, plain)]
 
 
-def _plain(value: Any) -> str:
-    if isinstance(value, (list, tuple)):
-        return f"({', '.join(map(_plain, value))})"
-    return f"{value:.6g}" if isinstance(value, float) else str(value)
+def process_facts(process: EnergyProcess | None) -> list[tuple[str, str]]:
+    """Return potential and noise of an energy process, if it is known."""
+    if process is None:
+        return []
+    return [
+        ("potential", f"B = {process.potential.formula}"),
+        ("noise", f"A = {process.noise:g}"),
+    ]
+
+
+def process_equations(
+    process: EnergyProcess | None, provenance: Mapping[str, Any]
+) -> list[Block]:
+    """Return the equations of an energy process, or how a user's own was described."""
+    if process is None:
+        described = provenance.get("process_description", {})
+        return [*energy_equations(), *unread_model(described)]
+    return [*energy_equations(), potential_equation(process.potential)]
+
+
+def _configuration(provenance: Mapping[str, Any]) -> dict[str, Any]:
+    return tomllib.loads(str(provenance.get("configuration", "")))

@@ -6,28 +6,28 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fpsolve.pages.blocks import (
-    Block,
-    Equation,
-    Facts,
-    Figure,
-    Notice,
-    Paragraph,
-    Part,
-    Section,
-    Table,
+from fpsolve.evolution.series import is_extrapolated
+from fpsolve.pages.blocks import Block, Facts, Notice, Paragraph, Part, Section, Table
+from fpsolve.pages.equations import model_equations
+from fpsolve.pages.figures import drawings
+from fpsolve.pages.numbers import formatted
+from fpsolve.pages.origin import provenance_part, suggestion
+from fpsolve.pages.runs import (
+    NOT_EXTRAPOLATED,
+    error_table,
+    outcome,
+    saved_rows,
+    step_text,
 )
-from fpsolve.pages.figures import embedded
-from fpsolve.pages.numbers import evenly, formatted
-from fpsolve.pages.origin import provenance_part, status_notice, suggestion
 from fpsolve.pages.settings import (
     curve_text,
     grid_text,
+    process_of,
     start_text,
+    units_part,
     unread_model,
     with_options,
 )
-from fpsolve.pages.units import process_of, units_part
 
 if TYPE_CHECKING:
     from fpsolve.density.solution import Solution
@@ -35,54 +35,27 @@ if TYPE_CHECKING:
 
 __all__ = ["accuracy_lines", "section", "series_columns"]
 
-# Name of a figure: caption, and what is seen on it.
-_FIGURES = {
-    "overview": (
-        "The run on one page: ∫ p dα at four saved s, with the contours that enclose "
-        "50 and 95 % of the equilibrium in white; relative entropy; law of the angle; "
-        "spread.",
-        "Maps of the density over the plane, and curves of entropy, angle and spread",
-    ),
-    "marginals": (
-        "∫ p dα at saved s; white: contours of the equilibrium.",
-        "Maps of the density over the plane at saved arclengths",
-    ),
-    "angle": ("∫ p dξ at saved s.", "Law of the angle at saved arclengths"),
-    "entropy": (
-        "Relative entropy above its value on the grid, and its dissipation.",
-        "Relative entropy and dissipation against arclength, logarithmic",
-    ),
-    "moments": (
-        "Means, variances and the mean direction.",
-        "Moments of the density against arclength",
-    ),
-}
-
 _NAMES = {"density_l1": "saved densities p, in the L¹ norm"}
 
 
 def section(solution: Solution, source: str) -> Section:
     """Return the section of a page about a solution."""
     process = process_of(solution.provenance)
-    parts = [
+    return Section("Density of a run", source, [
         Part("Summary", _summary(solution)),
         Part("Equation", _equations(solution)),
         Part("Parameters", [Facts(_parameters(solution))]),
-    ]
-    if process is not None:
-        parts.append(units_part(process))
-    parts += [
+        *units_part(process),
         Part("Numbers at saved arclengths", _numbers(solution, process)),
         Part("Accuracy", _accuracy(solution)),
-        Part("Figures", _figures(solution)),
+        Part("Figures", drawings(solution)),
         provenance_part(solution.provenance, call=solution.call),
-    ]
-    return Section("Density of a run", source, [part for part in parts if part.blocks])
+    ])  # fmt: skip
 
 
 def series_columns(solution: Solution) -> dict[str, list[str]]:
     """Entropy, minimum, mass error and boundary mass near evenly spaced saved s."""
-    rows = [step for step, _ in _rows(solution)]
+    rows = _steps(solution)
     series, errors = solution.series, solution.errors or {}
     entropy, mass = series["relative_entropy"], series["mass"]
     columns = {
@@ -109,15 +82,10 @@ def accuracy_lines(solution: Solution) -> list[str]:
     return lines if rate is None else [*lines, rate]
 
 
-def _rows(solution: Solution) -> list[tuple[int, int | None]]:
-    """Return recorded steps near evenly spaced saved s, with the number of each."""
-    s, saved = solution.series["s"], solution.saved_s
-    if not saved.size:
-        return [(s.size - 1, None)] if s.size else []
-    return [
-        (int(np.argmin(np.abs(s - saved[place]))), place)
-        for place in evenly(saved.size)
-    ]
+def _steps(solution: Solution) -> list[int]:
+    """Return recorded steps near evenly spaced saved s, or the last that there is."""
+    last = solution.series["s"].size - 1
+    return [*saved_rows(solution).values()] or ([last] if last >= 0 else [])
 
 
 def _rate(solution: Solution) -> str | None:
@@ -135,27 +103,20 @@ def _rate(solution: Solution) -> str | None:
 
 
 def _summary(solution: Solution) -> list[Block]:
-    blocks: list[Block] = [status_notice(solution.status, solution.message)]
-    if solution.errors is None:
-        blocks.append(
-            Notice("Not extrapolated: no estimate of the error in ds.", "warning")
-        )
     lines = accuracy_lines(solution)
-    return blocks + [Paragraph(f"{line[0].upper()}{line[1:]}.") for line in lines]
+    said = [Paragraph(f"{line[0].upper()}{line[1:]}.") for line in lines]
+    return [*outcome(solution, solution.message), *said]
 
 
 def _equations(solution: Solution) -> list[Block]:
     if solution.model is None:
         return unread_model(solution.provenance)
-    from fpsolve.pages.equations import model_equations
-
     said = (
         "p(s, ξ, α) is the density of the end of a fibre: its deviation ξ from the "
         "nozzle's path and its direction τ(α) = (cos α, sin α), s the length laid "
         "down. Everything is dimensionless."
     )
-    equations: list[Equation] = model_equations(solution.model)
-    return [*equations, Paragraph(said)]
+    return [*model_equations(solution.model), Paragraph(said)]
 
 
 def _parameters(solution: Solution) -> list[tuple[str, str]]:
@@ -171,7 +132,7 @@ def _parameters(solution: Solution) -> list[tuple[str, str]]:
         ("start", start_text(provenance, "initial")),
         ("grid", grid_text(solution.grid) + suggestion(provenance, "grid")),
         ("scheme", _scheme(solution.scheme)),
-        ("step", _step(solution) + suggestion(provenance, "ds")),
+        ("step", step_text(solution) + suggestion(provenance, "ds")),
         ("saved", f"{solution.saved_s.size} densities"),
     ]
     return [item for item in items if item[1]]
@@ -183,29 +144,17 @@ def _scheme(scheme: dict[str, Any]) -> str:
     )
 
 
-def _step(solution: Solution) -> str:
-    s = solution.series["s"]
-    reached = f", s from {s[0]:g} to {s[-1]:g}" if s.size else ""
-    also = " and ds/2, extrapolated" if solution.errors is not None else ""
-    return f"ds = {solution.ds:g}{also}{reached}"
-
-
 def _numbers(solution: Solution, process: Process | None) -> list[Block]:
-    columns = series_columns(solution)
-    rows = _rows(solution)
-    if not rows:
+    columns, steps = series_columns(solution), _steps(solution)
+    if not steps:
         return [Notice("Nothing was recorded.", "warning")]
-    steps = [step for step, _ in rows]
     if solution.errors is not None and solution.saved_s.size:
-        places = [place for _, place in rows if place is not None]
-        errors = solution.errors["density_l1"][places]
+        errors = solution.errors["density_l1"][[*saved_rows(solution)]]
         columns["L¹ error of p"] = formatted(errors, ".1e")
     if process is not None:
         lengths = 1e3 * process.to_metres(solution.series["s"][steps])
-        columns = {
-            "s": columns.pop("s"),
-            "s in mm": formatted(lengths, ".4g"),
-        } | columns
+        in_mm = {"s in mm": formatted(lengths, ".4g")}
+        columns = {"s": columns.pop("s"), **in_mm, **columns}
     table = Table(
         "Relative entropy, smallest value of p, relative drift of the mass and mass in "
         "the outermost cells.",
@@ -228,9 +177,8 @@ def _entropy_note(solution: Solution) -> str:
 def _accuracy(solution: Solution) -> list[Block]:
     if solution.errors is None:
         said = (
-            "Not extrapolated: no estimate of the error in ds. A run with extrapolate "
-            "= true solves with ds and ds/2, combines both, and estimates the error "
-            "of every number."
+            f"{NOT_EXTRAPOLATED} A run with extrapolate = true solves with ds and "
+            "ds/2, combines both, and estimates the error of every number."
         )
         return [Paragraph(said), *_laws(solution)]
     said = (
@@ -238,7 +186,11 @@ def _accuracy(solution: Solution) -> list[Block]:
         "step. What the grid does not resolve is not in them; the mass in the "
         "outermost cells and negative values tell of it."
     )
-    return [_error_table(solution), Paragraph(said), *_laws(solution)]
+    caption = "Largest estimated error in ds over the whole run."
+    errors = {name: solution.errors[name] for name in solution.errors
+              if is_extrapolated(name)}  # fmt: skip
+    table = error_table(errors, caption, _NAMES)
+    return [table, Paragraph(said), *_laws(solution)]
 
 
 def _laws(solution: Solution) -> list[Block]:
@@ -254,27 +206,3 @@ def _laws(solution: Solution) -> list[Block]:
             f"{off:.1e}, a lower bound of the L¹ error"
         )
     return [Paragraph(f"On a belt at rest {'; '.join(kept)}.")] if kept else []
-
-
-def _error_table(solution: Solution) -> Table:
-    from fpsolve.evolution.series import is_extrapolated, long_name
-
-    errors = solution.errors or {}
-    rows = [
-        (_NAMES.get(name) or long_name(name), f"{float(np.max(values)):.1e}")
-        for name, values in errors.items()
-        if np.size(values) and np.isfinite(values).all() and is_extrapolated(name)
-    ]
-    return Table(
-        "Largest estimated error in ds over the whole run.", ("quantity", "at most"),
-        rows, words=frozenset({0}),
-    )  # fmt: skip
-
-
-def _figures(solution: Solution) -> list[Figure]:
-    from fpsolve.plotting.files import possible_figures
-
-    return [
-        embedded(lambda draw=draw: draw(solution), *_FIGURES[name])  # type: ignore[misc]
-        for name, draw in possible_figures(solution).items()
-    ]

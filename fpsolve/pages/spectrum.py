@@ -14,11 +14,6 @@ if TYPE_CHECKING:
 
 __all__ = ["section"]
 
-_FIGURE = (
-    "Eigenvalues in the complex plane, by sector; dashed: where the gap ends.",
-    "Eigenvalues in the complex plane",
-)
-
 
 def section(spectrum: Spectrum, source: str) -> Section:
     """Return the section of a page about a spectrum."""
@@ -33,16 +28,14 @@ def section(spectrum: Spectrum, source: str) -> Section:
         f"The spectral gap is {gap}: in the end p/p_S - 1 falls like exp(-λs) with "
         "this λ, its relative entropy with twice that."
     )
-    parts = [
+    return Section("Eigenvalues of the generator", source, [
         Part("Summary", [Paragraph(said)]),
         Part("Equation", model_or_unread(spectrum.model, spectrum.provenance)),
         Part("Parameters", [Facts(items)]),
         Part("Eigenvalues", [_table(spectrum)]),
-        Part("Figure", drawings(spectrum, {"spectrum": _FIGURE})),
+        Part("Figure", drawings(spectrum)),
         provenance_part(spectrum.provenance, call=spectrum.call),
-    ]
-    title = "Eigenvalues of the generator"
-    return Section(title, source, [part for part in parts if part.blocks])
+    ])  # fmt: skip
 
 
 def _table(spectrum: Spectrum) -> Table:

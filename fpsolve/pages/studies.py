@@ -8,23 +8,36 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fpsolve._support.declared import declared
-from fpsolve.model.potentials.dictionaries import potential_from_dict
-from fpsolve.model.potentials.potential import Potential
-from fpsolve.pages.blocks import Block, Notice, Part, Table
+from fpsolve.pages.blocks import Block, Equation, Notice, Part, Table
+from fpsolve.pages.equations import potential_equation
+from fpsolve.pages.numbers import assigned, formatted
 from fpsolve.pages.origin import provenance_part
+from fpsolve.plotting.selection import potential_of
 
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["cases_blocks", "entries", "origin_of", "potential_of", "versions_part"]
+__all__ = ["cases_blocks", "listed", "potential_equations", "start_of", "versions_part"]
+
+# Attributes of a study that say where it was computed.
+_ORIGIN = ("versions", "environment", "call", "date")
 
 
-def potential_of(dataset: xr.Dataset) -> Potential | None:
-    """Return the potential of a study; None if it was a user's own."""
-    try:
-        return potential_from_dict(declared(dataset.attrs)["potential"])
-    except ValueError:
-        return None
+def potential_equations(dataset: xr.Dataset) -> list[Equation]:
+    """Return B(ξ) = … of a study; nothing if it was a user's own."""
+    potential = potential_of(dataset)
+    return [] if potential is None else [potential_equation(potential)]
+
+
+def start_of(law: Mapping[str, Any]) -> str:
+    """Return a law of the start as a call."""
+    options = dict(law)
+    return f"{options.pop('kind')}({assigned(options, '.4g')})"
+
+
+def listed(values: xr.DataArray, form: str = "g") -> str:
+    """Return numbers on a line."""
+    return ", ".join(formatted(values, form))
 
 
 def cases_blocks(dataset: xr.Dataset) -> list[Block]:
@@ -49,25 +62,14 @@ def cases_blocks(dataset: xr.Dataset) -> list[Block]:
     ]
 
 
-def versions_part(dataset: xr.Dataset, seconds: bool = True) -> Part:
+def versions_part(dataset: xr.Dataset) -> Part:
     """Return the provenance of a study, whose files hold versions and times."""
-    found = origin_of(dataset)
-    if seconds and "seconds" in dataset:
+    about = declared(dataset.attrs)
+    found = {name: about[name] for name in _ORIGIN if name in about}
+    if "seconds" in dataset:
         total = float(np.nansum(dataset["seconds"].to_numpy()))
         found["time of all cases"] = f"{total:.4g} s"
     return provenance_part(found)
-
-
-def origin_of(dataset: xr.Dataset) -> dict[str, Any]:
-    """Return what the attributes of a study say about where it was computed."""
-    kept = ("versions", "environment", "call", "date")
-    about = declared(dataset.attrs)
-    return {name: about[name] for name in kept if name in about}
-
-
-def entries(options: Mapping[str, Any]) -> str:
-    """Return names with their values on a line."""
-    return ", ".join(f"{name} = {_short(value)}" for name, value in options.items())
 
 
 def _unfinished(dataset: xr.Dataset) -> list[tuple[str, ...]]:
@@ -87,11 +89,3 @@ def _heading(dimension: Any) -> str:
 
 def _label(value: Any) -> str:
     return f"{value:g}" if isinstance(value, (float, np.floating)) else str(value)
-
-
-def _short(value: Any) -> str:
-    if isinstance(value, Mapping):
-        return f"({entries(value)})"
-    if isinstance(value, (list, tuple)):
-        return f"({', '.join(map(_short, value))})"
-    return f"{value:.4g}" if isinstance(value, float) else str(value)

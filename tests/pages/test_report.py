@@ -40,13 +40,12 @@ def page_of(tmp_path, monkeypatch):
 
     Figures are not drawn, which would take the most time: empty ones stand for them.
     """
-    for module in ("solution", "paths", "figures"):
-        # By its module: `fpsolve.report` is the function.
-        monkeypatch.setattr(
-            importlib.import_module(f"fpsolve.pages.{module}"),
-            "embedded",
-            lambda draw, caption, alt: Figure("data:,", 100, caption, alt),
-        )
+    # By its module: `fpsolve.report` is the function.
+    monkeypatch.setattr(
+        importlib.import_module("fpsolve.pages.figures"),
+        "embedded",
+        lambda draw, caption, alt: Figure("data:,", 100, caption, alt),
+    )
 
     def make(result, **options):
         path = fp.report(result, tmp_path / "page.html", **options)

@@ -205,8 +205,7 @@ def test_a_result_is_told_with_figures_and_where_it_comes_from(
     name, tmp_path, monkeypatch
 ):
     if name.partition(",")[0] in DRAWN_IN_TEST_REPORT:
-        for module in ("solution", "paths", "figures"):
-            monkeypatch.setattr(f"fpsolve.pages.{module}.embedded", undrawn)
+        monkeypatch.setattr("fpsolve.pages.figures.embedded", undrawn)
     path = saved(result(name), tmp_path / "result.nc")
     page = report_text(path)
     assert "result.nc" in page

@@ -12,8 +12,7 @@ from solutions import relaxing_solution
 import fpsolve as fp
 from fpsolve._support.netcdf import write_dataset
 from fpsolve.grids.initial import gaussian
-from fpsolve.pages.page import html_page
-from fpsolve.pages.reading import section_of
+from fpsolve.pages.page import html_page, section_of
 from fpsolve.paths import GaussianLaw
 from fpsolve.studies import compare
 from fpsolve.studies.energy_tables import tables_dataset

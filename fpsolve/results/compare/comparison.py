@@ -10,7 +10,7 @@ from fpsolve.results.compare.differences import FLOOR, Difference
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["ROUNDING", "Comparison", "in_errors_text", "place_text", "verdict"]
+__all__ = ["ROUNDING", "Comparison", "place_text", "verdict"]
 
 # What other processors and libraries change, in units of the largest value: rounding
 # of 1e-16, a thousand steps, and a condition number of a thousand.
@@ -163,8 +163,10 @@ def _line(one: Difference) -> str:
     text = f"{one.name}: {one.largest:.3g} ({one.relative:.2g} of the largest value)"
     place = place_text(one)
     text += f" at {place}" if place else ""
-    errors = in_errors_text(one)
-    return f"{text}, {errors}" if errors else text
+    if one.in_errors is not None:
+        unit = "standard errors" if one.statistical else "of the estimated errors"
+        text += f", {one.in_errors:.2g} {unit}"
+    return text
 
 
 def place_text(one: Difference) -> str:
@@ -173,12 +175,3 @@ def place_text(one: Difference) -> str:
         f"{name} = {value:.3g}" if isinstance(value, float) else f"{name} = {value}"
         for name, value in one.place.items()
     )
-
-
-def in_errors_text(one: Difference) -> str:
-    """Return the difference in units of its error."""
-    if one.in_errors is None:
-        return ""
-    if one.statistical:
-        return f"{one.in_errors:.2g} standard errors"
-    return f"{one.in_errors:.2g} of the estimated errors"

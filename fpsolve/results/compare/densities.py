@@ -47,12 +47,11 @@ def on_common_grid(
     """
     p, q = a["density"], b["density"]
     for axis in PLANE:
-        coarse, fine = sorted((p, q), key=lambda one: one.sizes[axis])
-        ratio, rest = divmod(fine.sizes[axis], coarse.sizes[axis])
+        n = min(p.sizes[axis], q.sizes[axis])
+        rest = p.sizes[axis] % n + q.sizes[axis] % n
         if rest or not _same_box(p[axis].to_numpy(), q[axis].to_numpy()):
             return None
-        p, q = (_averaged(one, axis, ratio if one.sizes[axis] == fine.sizes[axis]
-                          else 1) for one in (p, q))  # fmt: skip
+        p, q = (_averaged(one, axis, one.sizes[axis] // n) for one in (p, q))
     if _ANGLE in p.dims:
         n = min(p.sizes[_ANGLE], q.sizes[_ANGLE])
         p, q = to_angles(p, n), to_angles(q, n)

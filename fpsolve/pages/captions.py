@@ -1,0 +1,116 @@
+"""Below every figure a caption, and in its place a text for those who do not see it."""
+
+from __future__ import annotations
+
+__all__ = ["CAPTIONS"]
+
+# By the kind of a result and the name of its figure.
+CAPTIONS = {
+    "solution/overview": (
+        "The run on one page: ∫ p dα at four saved s, with the contours that enclose "
+        "50 and 95 % of the equilibrium in white; relative entropy; law of the angle; "
+        "spread.",
+        "Maps of the density over the plane, and curves of entropy, angle and spread",
+    ),
+    "solution/marginals": (
+        "∫ p dα at saved s; white: contours of the equilibrium.",
+        "Maps of the density over the plane at saved arclengths",
+    ),
+    "solution/angle": ("∫ p dξ at saved s.", "Law of the angle at saved arclengths"),
+    "solution/entropy": (
+        "Relative entropy above its value on the grid, and its dissipation.",
+        "Relative entropy and dissipation against arclength, logarithmic",
+    ),
+    "solution/moments": (
+        "Means, variances and the mean direction.",
+        "Moments of the density against arclength",
+    ),
+    "paths/ensemble": (
+        "Histograms at the last saved s, and moments with bands of one standard error; "
+        "white: contours that enclose 50 and 95 % of the equilibrium.",
+        "Histograms of deviation and angle, and moments of the paths",
+    ),
+    "paths/trajectory": (
+        "One path: the deviation ξ in the plane, and the same over s.",
+        "A single path of the process",
+    ),
+    "paths/fibre": (
+        "One fibre on the belt, as it is laid down.",
+        "A single fibre on the moving belt",
+    ),
+    "hydrodynamic/hydrodynamic": (
+        "Plane densities at saved s; white: contours of the stationary density.",
+        "Maps of the density, and curves of entropy, means and spread",
+    ),
+    "energy/law": (
+        "Law of the energy at saved s; dashed: the stationary law.",
+        "Curves of the density of the energy, and of its entropy",
+    ),
+    "steady-state/stationary": (
+        "Left: the density over the plane; white: contours of c exp(-B). Right: the "
+        "density of the angle; dashed: uniform.",
+        "Map of the stationary density and curve over the angle",
+    ),
+    "spectral/series": (
+        "Relative entropy and means over s, with estimated errors.",
+        "Curves of entropy and means",
+    ),
+    "hydrodynamic-paths/moments": (
+        "Means and variances of the paths, with standard errors.",
+        "Curves of means and variances",
+    ),
+    "energy-paths/energies": (
+        "Histograms of the signed energy at saved s; dashed: the stationary density.",
+        "Histograms of the energy",
+    ),
+    "check/check": (
+        "Marginals of the density (lines) and of the paths (points); beneath, the "
+        "deviation of every cell in standard deviations.",
+        "Marginals of density and paths with their deviations",
+    ),
+    "spectrum/spectrum": (
+        "Eigenvalues in the complex plane, by sector; dashed: where the gap ends.",
+        "Eigenvalues in the complex plane",
+    ),
+    "rate/integral": (
+        "Inverse decay rate ∫ H ds against noise, as in figure 5 of the paper.",
+        "Curve of the inverse decay rate against noise",
+    ),
+    "rate/rates": (
+        "Decay rates of the leading modes, of the runs, and what is proven.",
+        "Curves of decay rates and bounds against noise",
+    ),
+    "rate/averages": (
+        "Asymptotic variances against noise.",
+        "Curves of asymptotic variances against noise",
+    ),
+    "large-noise/distances": (
+        "Distances against the small parameter; thin lines: the slope that is derived.",
+        "Distances to the limit against the small parameter, logarithmic",
+    ),
+    "small-noise/distances": (
+        "Distances against the small parameter; thin lines: the slope that is derived.",
+        "Distances to the limit against the small parameter, logarithmic",
+    ),
+    "small-noise-spectrum/spectrum": (
+        "Slowest real rates of the sectors M = 0 over A²; dashed: the energy process.",
+        "Rates of both families against noise",
+    ),
+    "energy-tables/orbits": (
+        "Orbits of the deterministic motion and their fibres.",
+        "Level curves of the energy and fibres of some energies",
+    ),
+    "energy-tables/coefficients": (
+        "Period and variance against energy.",
+        "Curves of period and variance against energy",
+    ),
+    "energy-tables/eigenfunctions": (
+        "Slowest modes of both families.",
+        "Curves of the slowest eigenfunctions against energy",
+    ),
+    "averages/averages": (
+        "Error of one average against s, and the limits of s times squared error "
+        "against the noise.",
+        "Curves of errors against arclength and of variances against noise",
+    ),
+}
