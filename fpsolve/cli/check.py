@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 __all__ = ["check"]
 
-NumberOfPaths = Annotated[int, typer.Option("--n-paths", help="Number of paths.")]
+NumberOfPaths = Annotated[int, typer.Option(help="Number of paths.")]
 Seed = Annotated[int, typer.Option(min=0, help="Seed of the paths.")]
 At = Annotated[
     list[float] | None,
@@ -39,14 +39,11 @@ At = Annotated[
     ),
 ]
 FalseAlarm = Annotated[
-    float,
-    typer.Option(help="Probability of failing although density and paths agree."),
+    float, typer.Option(help="Probability of failing although density and paths agree.")
 ]
 PathsStep = Annotated[
     float | None,
-    typer.Option(
-        "--paths-ds", help="Step of the paths.", show_default="from the error estimate"
-    ),
+    typer.Option(help="Step of the paths.", show_default="from the error estimate"),
 ]
 _MOST_PLACES = 3
 

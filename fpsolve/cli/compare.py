@@ -23,10 +23,7 @@ Second = Annotated[
     Path, typer.Argument(metavar="B", help="Another result of the same kind.")
 ]
 Out = Annotated[
-    Path | None,
-    typer.Option(
-        help="Folder for the figure; by default that of B.", show_default=False
-    ),
+    Path | None, typer.Option(help="Folder for the figure; by default that of B.")
 ]
 Tolerance = Annotated[
     float | None,

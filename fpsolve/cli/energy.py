@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 __all__ = ["energy"]
 
 Energies = Annotated[
-    int, typer.Option("--energies", min=1, help="Rows of the table, from 0 to g_max.")
+    int, typer.Option(min=1, help="Rows of the table, from 0 to g_max.")
 ]
 Count = Annotated[
     int, typer.Option("--count", "-n", min=1, help="Eigenvalues of each family.")
@@ -34,12 +34,9 @@ Passage = Annotated[
     ),
 ]
 
-# What is drawn, and by which function.
-_FIGURES = {
-    "orbits": "orbits",
-    "coefficients": "energy_coefficients",
-    "eigenfunctions": "energy_eigenfunctions",
-}
+_FIGURES = [
+    f"energy-{name}.png" for name in ("orbits", "coefficients", "eigenfunctions")
+]
 
 
 @with_parameters
@@ -59,9 +56,8 @@ def energy(
     rates of (16), with errors, and writes them and figures. The energy is
     G = r exp(-B(r)) sin β, β the angle between fibre and radius.
     """
-    figures = (f"energy-{name}.png" for name in _FIGURES)
-    with command(out, "energy.nc", *figures, figures=not no_figures) as frame:
-        from fpsolve.plotting import energy as plotting
+    with command(out, "energy.nc", *_FIGURES, figures=not no_figures) as frame:
+        from fpsolve.plotting.files import possible_figures
         from fpsolve.reduced.energy.process import EnergyProcess
         from fpsolve.studies.energy_tables import tables_dataset
 
@@ -77,9 +73,8 @@ def energy(
             count=count,
         )  # fmt: skip
         frame.finish(tables.assign_attrs(used), "energy.nc")
-        for name, drawn in _FIGURES.items():
-            draw = getattr(plotting, f"plot_{drawn}")
-            frame.figure(draw, process, name=f"energy-{name}.png")
+        for name, draw in possible_figures(tables).items():
+            frame.figure(draw, tables, name=f"energy-{name}.png")
 
 
 def _passage(process: EnergyProcess, start: float, target: float) -> str:
@@ -105,7 +100,9 @@ def _print(process: EnergyProcess, tables: xr.Dataset) -> None:
     for family, meaning in (("even", "|G|"), ("odd", "sign of G")):
         one = tables.sel(family=family)
         print_lines(f"decay rates, {family} family ({meaning}):")
-        pairs = zip(one["eigenvalue"].to_numpy(), one["eigenvalue_error"].to_numpy(),
-                    strict=True)  # fmt: skip
-        for value, error in pairs:
+        for value, error in zip(
+            one["eigenvalue"].to_numpy(),
+            one["eigenvalue_error"].to_numpy(),
+            strict=True,
+        ):
             print_lines(f"  {value:.10g} ± {error:.0e}" if error else "  0 exactly")

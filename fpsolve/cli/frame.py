@@ -142,13 +142,12 @@ class Frame:
         """Draw `draw(*of)` as PNG and print its path, unless figures are not wanted."""
         if not self.figures:
             return
-        from fpsolve._support.files import atomic_path
-        from fpsolve.plotting.style import RESOLUTION, paper_style
+        from fpsolve.plotting.files import write_figure
+        from fpsolve.plotting.style import paper_style
 
         path = self.path(name)
-        with paper_style(), atomic_path(path) as draft:
-            draw(*of).savefig(draft, dpi=RESOLUTION)
-        typer.echo(path)
+        with paper_style():
+            typer.echo(write_figure(draw(*of), path))
 
     def text(self, text: str, name: str) -> None:
         """Write a text, and print its path."""

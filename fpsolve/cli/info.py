@@ -35,23 +35,14 @@ def _threads() -> str:
 
 
 def _cache() -> str:
-    folders = sorted(_cache_folders())
-    files = [
-        file
-        for folder in folders
-        for pattern in ("*.nbi", "*.nbc")
-        for file in folder.glob(pattern)
-    ]
-    size = sum(file.stat().st_size for file in files)
+    found = {kernel.stats.cache_path for kernel in _kernels()} - {None}
+    folders = sorted(map(Path, found))
     if not folders:
         return "none; set NUMBA_CACHE_DIR to a folder that can be written"
+    files = [file for folder in folders for file in folder.glob("*.nb[ic]")]
+    size = sum(file.stat().st_size for file in files)
     places = ", ".join(map(str, folders))
     return f"{places} ({len(files)} files, {size / 2**20:.1f} MiB)"
-
-
-def _cache_folders() -> set[Path]:
-    paths = (kernel.stats.cache_path for kernel in _kernels())
-    return {Path(path) for path in paths if path is not None}
 
 
 def _kernels() -> Iterator[Any]:

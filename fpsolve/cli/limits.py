@@ -113,9 +113,8 @@ def _study(
             **options,
         )  # fmt: skip
     used = command_line(
-        "limits", name, potential=potential, noise=noises,
-        quick=options["quick"],
-    )  # fmt: skip
+        "limits", name, potential=potential, noise=noises, quick=options["quick"]
+    )
     _print(found, name)
     frame.finish(found.assign_attrs(used), f"{file_name}.nc")
     if bool(found["distance"].notnull().any()):

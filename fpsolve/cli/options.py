@@ -1,18 +1,20 @@
-"""Options that several commands have, and what is done with them."""
+"""Options that several commands have, what completes them and is done with them."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from fpsolve.cli.completion import EXAMPLES, proposing
-
 if TYPE_CHECKING:
     from fpsolve.cli.config.run import RunConfig
 
 __all__ = [
+    "CONFINING",
+    "EXAMPLES",
+    "PARTS",
     "Config",
     "Example",
     "KeepCheckpoint",
@@ -21,16 +23,32 @@ __all__ = [
     "Scheduler",
     "Threads",
     "Workers",
+    "proposing",
     "read_config",
     "set_threads",
 ]
+
+# Written out, because a shell waits for the answer: the modules that know these words
+# take half a second to import. tests/cli/test_cli_completion.py holds them together.
+EXAMPLES = ("laydown", "spunbond")
+CONFINING = ("quadratic", "linear", "power")
+PARTS = ("relaxation", "evolution", "branches", "gap", "variance")
+
+
+def proposing(*words: str) -> Callable[[str], list[str]]:
+    """Return what completes the beginning of one of the words."""
+
+    def completions(incomplete: str) -> list[str]:
+        return [word for word in words if word.startswith(incomplete)]
+
+    return completions
+
 
 Config = Annotated[
     Path | None,
     typer.Argument(
         metavar="CONFIG.toml",
         help="TOML file that describes the run; without it the packaged example.",
-        show_default=False,
     ),
 ]
 Out = Annotated[Path, typer.Option(help="Folder for the result and the figures.")]
@@ -40,13 +58,11 @@ Example = Annotated[
         metavar="NAME",
         help="Run a packaged example: laydown or spunbond.",
         autocompletion=proposing(*EXAMPLES),
-        show_default=False,
     ),
 ]
 NoFigures = Annotated[bool, typer.Option("--no-figures", help="Draw no figures.")]
 Threads = Annotated[
-    int | None,
-    typer.Option(min=1, help="Threads for the kernels.", show_default="all"),
+    int | None, typer.Option(min=1, help="Threads for the kernels.", show_default="all")
 ]
 KeepCheckpoint = Annotated[
     bool,
@@ -56,11 +72,7 @@ KeepCheckpoint = Annotated[
 ]
 Scheduler = Annotated[
     str | None,
-    typer.Option(
-        metavar="ADDRESS",
-        help="Run on the dask scheduler at this address.",
-        show_default=False,
-    ),
+    typer.Option(metavar="ADDRESS", help="Run on the dask scheduler at this address."),
 ]
 Workers = Annotated[
     int | None,
@@ -70,8 +82,7 @@ Workers = Annotated[
 
 def read_config(config: Path | None, example: str | None) -> RunConfig:
     """Return what a file or a packaged example describes."""
-    from fpsolve.cli.config.examples import EXAMPLES, example_path
-    from fpsolve.cli.config.reading import load_config
+    from fpsolve.cli.config.reading import example_path, load_config
 
     if config is not None and example is not None:
         raise ValueError(

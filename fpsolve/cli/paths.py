@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from fpsolve.cli.frame import Frame, command
 from fpsolve.cli.options import NoFigures, Out, Threads, set_threads
-from fpsolve.cli.writing import claim_result, write_result
+from fpsolve.cli.writing import claim_result, print_moments, write_result
 
 if TYPE_CHECKING:
     from fpsolve.cli.config.paths import PathsConfig
@@ -22,14 +22,10 @@ Config = Annotated[
     typer.Argument(
         metavar="CONFIG.toml",
         help="TOML file with a section [paths]; without it the packaged example.",
-        show_default=False,
     ),
 ]
 NumberOfPaths = Annotated[
-    int | None,
-    typer.Option(
-        "--n-paths", min=1, help="Number of paths.", show_default="of the file"
-    ),
+    int | None, typer.Option(min=1, help="Number of paths.", show_default="of the file")
 ]
 Seed = Annotated[
     int | None,
@@ -52,30 +48,22 @@ def paths(
     stops the sampling and writes what was finished until then.
     """
     with command(out) as frame:
-        from fpsolve.cli.config.examples import PATHS_EXAMPLE, example_path
         from fpsolve.cli.config.paths import PathsConfig
-        from fpsolve.cli.config.reading import load_config
+        from fpsolve.cli.config.reading import PATHS_EXAMPLE, example_path, load_config
 
         path = example_path(PATHS_EXAMPLE) if config is None else config
         chosen = load_config(path, PathsConfig)
         seed_from = "from the configuration" if seed is None else "from `--seed`"
         if seed is None and chosen.paths.seed is None:
             seed_from = "drawn"
-        chosen = _changed(chosen, "paths", n_paths=n_paths, seed=seed)
-        chosen = _changed(chosen, "output", figures=False if no_figures else None)
+        chosen = chosen.changed("paths", n_paths=n_paths, seed=seed)
+        chosen = chosen.changed("output", figures=False if no_figures else None)
         set_threads(threads)
         _sample(frame, chosen, seed_from)
 
 
-def _changed(config: PathsConfig, section: str, **keys: Any) -> PathsConfig:
-    """Return the configuration with the keys that are not None in a section."""
-    given = {name: value for name, value in keys.items() if value is not None}
-    changed = getattr(config, section).model_copy(update=given)
-    return config.model_copy(update={section: changed})
-
-
 def _sample(frame: Frame, config: PathsConfig, seed_from: str) -> None:
-    from fpsolve.cli.ensemble import print_moments, print_paths_plan
+    from fpsolve.cli.plan import print_paths_plan
     from fpsolve.paths.sampling import sample_paths
 
     problem = config.build()

@@ -1,4 +1,4 @@
-"""What a run is going to do, before it does it."""
+"""What a run or a sampling is going to do, before it does it."""
 
 from __future__ import annotations
 
@@ -8,28 +8,58 @@ from typing import TYPE_CHECKING, Any
 from fpsolve.cli.console import print_pairs
 
 if TYPE_CHECKING:
+    from fpsolve.cli.config.paths import PathsConfig, PathsProblem
     from fpsolve.cli.config.run import Problem, RunConfig
 
-__all__ = ["print_plan", "suggestions", "units_text", "with_options"]
+__all__ = ["print_paths_plan", "print_plan", "suggestions"]
 
 
 def print_plan(config: RunConfig, problem: Problem, out: Path) -> None:
     """Print equation, units, grid, start, scheme, steps, and where they come from."""
-    print_pairs(_lines(config, problem, out))
-
-
-def _lines(config: RunConfig, problem: Problem, out: Path) -> list[tuple[str, str]]:
-    lines = [("equation", problem.model.equation)]
-    if config.process is not None:
-        lines.append(("units", units_text(config.process.make())))
-    lines += [
-        ("grid", _grid(problem)),
-        ("start", with_options(config.initial)),
-        ("scheme", f"{with_options(config.scheme)}, order {problem.scheme.order}"),
+    grid = problem.grid
+    size = f"{grid.nbytes / 2**20:.3g} MiB per density"
+    between = [
+        ("grid", f"{_cells(grid)}, {size} ({_source(grid)})"),
+        ("start", _with_options(config.initial)),
+        ("scheme", f"{_with_options(config.scheme)}, order {problem.scheme.order}"),
         ("run", _steps(problem.arguments)),
-        ("result", str(out / config.output.file_name)),
     ]
-    return lines
+    _print(config, problem.model.equation, between, out)
+
+
+def print_paths_plan(
+    config: PathsConfig, problem: PathsProblem, out: Path, seed_from: str
+) -> None:
+    """Print equation, units, start, steps, method, and where the seed comes from."""
+    arguments = problem.arguments
+    start = "ξ = 0, α uniform" if config.start is None else _with_options(config.start)
+    between = [
+        ("start", start),
+        ("paths", _sampling(arguments)),
+        ("method", arguments["method"]),
+        ("seed", f"{arguments['seed']} ({seed_from})"),
+    ]
+    if config.histogram is not None:
+        between.append(("histogram", _cells(arguments["histogram"])))
+    _print(config, problem.model.process_equation, between, out)
+
+
+def _print(
+    config: RunConfig | PathsConfig,
+    equation: str,
+    between: list[tuple[str, str]],
+    out: Path,
+) -> None:
+    """Print equation and units, what is between, and where the result goes."""
+    lines = [("equation", equation)]
+    if config.process is not None:
+        process = config.process.make()
+        units = (
+            f"ξ and s in units of {1e3 * process.length:g} mm, laid down in "
+            f"{1e3 * process.time:g} ms; A = {process.noise:g} m^-1/2"
+        )
+        lines.append(("units", units))
+    print_pairs([*lines, *between, ("result", str(out / config.output.file_name))])
 
 
 def suggestions(problem: Problem) -> dict[str, str]:
@@ -39,21 +69,11 @@ def suggestions(problem: Problem) -> dict[str, str]:
     return {name: reason for name, reason in reasons.items() if reason is not None}
 
 
-def units_text(process: Any) -> str:
-    """Say what one unit of length means in SI units."""
-    return (
-        f"ξ and s in units of {1e3 * process.length:g} mm, laid down in "
-        f"{1e3 * process.time:g} ms; A = {process.noise:g} m^-1/2"
-    )
-
-
-def _grid(problem: Problem) -> str:
-    grid = problem.grid
-    cells = " x ".join(map(str, grid.shape))
+def _cells(grid: Any) -> str:
+    """Say how many cells there are, and in which box."""
     width1, width2 = grid.half_widths
-    box = f"|ξ₁| < {width1:g}, |ξ₂| < {width2:g}"
-    size = f"{grid.nbytes / 2**20:.3g} MiB per density"
-    return f"{cells} cells, {box}, {size} ({_source(grid)})"
+    shape = " x ".join(map(str, grid.shape))
+    return f"{shape} cells, |ξ₁| < {width1:g}, |ξ₂| < {width2:g}"
 
 
 def _steps(arguments: dict[str, Any]) -> str:
@@ -63,13 +83,22 @@ def _steps(arguments: dict[str, Any]) -> str:
     return f"s from {start:g} to {end:g}, ds = {ds:g}{also} ({_source(ds)})"
 
 
+def _sampling(arguments: dict[str, Any]) -> str:
+    end, ds = arguments["s_end"], arguments["ds"]
+    kept = "" if arguments["keep"] else ", positions not kept"
+    return (
+        f"{arguments['n_paths']} of length {end:g}, ds = {ds:g}, saved at "
+        f"{len(arguments['save_at'])} arclengths{kept}"
+    )
+
+
 def _source(value: Any) -> str:
     """Return why a value was suggested, or that the configuration gives it."""
     reason = getattr(value, "reason", None)
     return "from the configuration" if reason is None else f"suggested: {reason}"
 
 
-def with_options(section: Any) -> str:
+def _with_options(section: Any) -> str:
     """Write a section as a call."""
     options = section.model_dump(exclude_none=True)
     kind = options.pop("kind")

@@ -19,10 +19,7 @@ File = Annotated[
 ]
 Out = Annotated[
     Path | None,
-    typer.Option(
-        help="Folder for the figures; by default that of the file.",
-        show_default=False,
-    ),
+    typer.Option(help="Folder for the figures; by default that of the file."),
 ]
 Movie = Annotated[
     bool, typer.Option("--movie", help="Also make a movie (GIF) of a density.")

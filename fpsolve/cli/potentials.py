@@ -10,19 +10,12 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from fpsolve.cli.completion import CONFINING, proposing
+from fpsolve.cli.options import CONFINING, proposing
 
 if TYPE_CHECKING:
     from fpsolve.model.potentials.potential import Potential
 
-__all__ = [
-    "PARAMETERS",
-    "Kind",
-    "Kinds",
-    "Noise",
-    "Parameters",
-    "with_parameters",
-]
+__all__ = ["PARAMETERS", "Kind", "Kinds", "Noise", "Parameters", "with_parameters"]
 
 
 def _kind(end: str = ".", **options: Any) -> Any:

@@ -9,10 +9,9 @@ import typer
 
 from fpsolve.cli.cases import computing_cases, report_failures
 from fpsolve.cli.command import command_line
-from fpsolve.cli.completion import PARTS, proposing
 from fpsolve.cli.console import print_lines, print_table
 from fpsolve.cli.frame import Frame, command
-from fpsolve.cli.options import NoFigures, Out, Scheduler, Workers
+from fpsolve.cli.options import PARTS, NoFigures, Out, Scheduler, Workers, proposing
 from fpsolve.cli.potentials import PARAMETERS, Kinds, Parameters, with_parameters
 
 if TYPE_CHECKING:

@@ -53,15 +53,17 @@ def rerun(
         from fpsolve.results.kinds import KINDS
 
         old = dataset_of(file, "FILE")
-        kind = kind_of_dataset(old, "FILE")
+        name = kind_of_dataset(old, "FILE")
+        kind = KINDS[name]
         status = str(old.attrs.get("status", "finished"))
         target = _target(file, out, status)
         frame.claim(target.name)
         set_threads(threads)
-        _announce(old, kind, status)
-        given = workers is not None and KINDS[kind].counts == "cases"
+        _announce(old, kind.words, status)
+        given = workers is not None and kind.counts == "cases"
         options = {"workers": workers} if given else {}
-        frame.finish(_repeat(frame, file, kind, options), target.name)
+        new = _repeat(frame, file, name, kind.counts, options)
+        frame.finish(new, target.name)
         _judge(_compared(file, target), status)
 
 
@@ -77,25 +79,24 @@ def _target(file: Path, out: Path, status: str) -> Path:
     return target
 
 
-def _announce(old: xr.Dataset, kind: str, status: str) -> None:
-    from fpsolve.results.kinds import KINDS
-
+def _announce(old: xr.Dataset, words: str, status: str) -> None:
     about = old.attrs.get("command") or old.attrs.get("equation") or ""
-    typer.echo(f"repeating {KINDS[kind].words}: {about}".rstrip(": "))
+    typer.echo(f"repeating {words}: {about}".rstrip(": "))
     if status != "finished":
         article = "an" if status == "interrupted" else "a"
         typer.echo(f"the file holds {article} {status} run; the whole is repeated")
 
 
-def _repeat(frame: Frame, file: Path, kind: str, options: dict[str, Any]) -> Any:
-    from fpsolve.results.kinds import KINDS
+def _repeat(
+    frame: Frame, file: Path, name: str, counts: str, options: dict[str, Any]
+) -> Any:
     from fpsolve.results.rerun.repeating import rerun as repeat
 
-    counts = KINDS[kind].counts
-    bar: AbstractContextManager[Any] | None = None
-    if counts in ("", "cases"):
-        bar = case_bar(kind) if counts else nullcontext()
-    with frame.computing(bar=bar, kept="nothing was written") as report:
+    bars: dict[str, AbstractContextManager[Any]] = {
+        "": nullcontext(),
+        "cases": case_bar(name),
+    }
+    with frame.computing(bar=bars.get(counts), kept="nothing was written") as report:
         progress = {"progress": report} if counts else {}
         return repeat(file, **progress, **options)
 

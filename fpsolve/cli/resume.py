@@ -10,13 +10,8 @@ import typer
 
 from fpsolve.cli.frame import Frame, command
 from fpsolve.cli.options import KeepCheckpoint, NoFigures, Threads, set_threads
-from fpsolve.cli.solving import (
-    RECORDED,
-    print_solution,
-    say_where,
-    solve_and_write,
-)
-from fpsolve.cli.writing import claim_result, write_result
+from fpsolve.cli.solving import RECORDED, say_where, solve_and_write
+from fpsolve.cli.writing import claim_result, print_solution, write_result
 
 if TYPE_CHECKING:
     from fpsolve.density.checkpoints.manifest import Manifest
@@ -71,8 +66,7 @@ def _resume_configured(
 
     text = manifest.notes["configuration"]
     config = read_config(text, f"the configuration in `{directory}`")
-    if not frame.figures:
-        config = config.without_figures()
+    config = config.changed("output", figures=None if frame.figures else False)
     p0 = read_start(directory, manifest.run)["p0"]
     problem = config.build(saved_in_memory=False)._replace(p0=p0)
     checkpoint = Checkpoint(directory, manifest.every, manifest.notes)

@@ -27,7 +27,6 @@ Every = Annotated[
     typer.Option(
         metavar="EVERY",
         help="Write a checkpoint every so many steps, 100, or so often, 30s or 5min.",
-        show_default=False,
     ),
 ]
 
@@ -49,8 +48,7 @@ def run(
     """
     with command() as frame:
         chosen = read_config(config, example)
-        if no_figures:
-            chosen = chosen.without_figures()
+        chosen = chosen.changed("output", figures=False if no_figures else None)
         set_threads(threads)
         frame.use(out)
         from fpsolve.density.checkpoints.checkpoint import Checkpoint, parse_interval

@@ -6,9 +6,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from fpsolve.cli.console import print_lines, print_table
 from fpsolve.cli.errors import say
-from fpsolve.cli.writing import claim_result, write_result
+from fpsolve.cli.writing import claim_result, print_solution, write_result
 
 if TYPE_CHECKING:
     from fpsolve.cli.config.run import Problem, RunConfig
@@ -16,7 +15,7 @@ if TYPE_CHECKING:
     from fpsolve.density.checkpoints.checkpoint import Checkpoint
     from fpsolve.density.solution import Solution
 
-__all__ = ["RECORDED", "print_solution", "say_where", "solve_and_write"]
+__all__ = ["RECORDED", "say_where", "solve_and_write"]
 
 # What a run leaves that stops early.
 RECORDED = "what was recorded until then is kept"
@@ -85,18 +84,3 @@ def say_where(folder: Path) -> None:
         say(f"the run in `{folder}` was finished; its result is written now")
     else:
         say(f"going on from `{folder}` at {status}")
-
-
-def print_solution(solution: Solution) -> None:
-    """Print entropy, minimum, mass error and error estimates at some arclengths."""
-    from fpsolve.pages.solution import accuracy_lines, series_columns
-
-    columns = series_columns(solution)
-    print_table(columns, zip(*columns.values(), strict=True))
-    print_lines(*accuracy_lines(solution))
-    seconds = solution.provenance
-    if "wall_seconds" in seconds:
-        print_lines(
-            f"{solution.status} after {seconds['wall_seconds']:.2f} s "
-            f"({seconds['cpu_seconds']:.2f} s of CPU time)"
-        )

@@ -1,4 +1,4 @@
-"""What `run`, `resume` and `paths` leave: a result, its configuration, and figures."""
+"""What `run`, `resume` and `paths` leave: numbers, a result, its TOML, and figures."""
 
 from __future__ import annotations
 
@@ -9,12 +9,14 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
+from fpsolve.cli.console import print_lines, print_table
+
 if TYPE_CHECKING:
     from fpsolve.cli.frame import Frame
     from fpsolve.density.solution import Solution
     from fpsolve.paths.result import Paths
 
-__all__ = ["claim_result", "write_result"]
+__all__ = ["claim_result", "print_moments", "print_solution", "write_result"]
 
 # What may be appended to the name of a result, and is in the end.
 _ENDINGS = ("", "-interrupted", "-failed")
@@ -56,3 +58,30 @@ def write_result(
 
         for figure in save_figures(result, frame.out, prefix=f"{name.stem}-"):
             typer.echo(figure)
+
+
+def print_solution(solution: Solution) -> None:
+    """Print entropy, minimum, mass error and error estimates at some arclengths."""
+    from fpsolve.pages.solution import accuracy_lines, series_columns
+
+    columns = series_columns(solution)
+    print_table(columns, zip(*columns.values(), strict=True))
+    print_lines(*accuracy_lines(solution), *_duration(solution))
+
+
+def print_moments(paths: Paths) -> None:
+    """Print means and variances with their standard errors at some arclengths."""
+    from fpsolve.pages.paths import MOMENTS, moment_rows
+
+    print_table(("s", *MOMENTS), moment_rows(paths))
+    print_lines("in parentheses: one standard error, in units of the last digit")
+    print_lines(*_duration(paths))
+
+
+def _duration(result: Solution | Paths) -> list[str]:
+    """Say how a run ended and how long it took, if that is known."""
+    seconds = result.provenance
+    if "wall_seconds" not in seconds:
+        return []
+    wall, cpu = seconds["wall_seconds"], seconds["cpu_seconds"]
+    return [f"{result.status} after {wall:.2f} s ({cpu:.2f} s of CPU time)"]

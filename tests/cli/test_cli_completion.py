@@ -6,7 +6,7 @@ import sys
 
 import pytest
 
-from fpsolve.cli import completion
+from fpsolve.cli import options
 from fpsolve.cli.config import EXAMPLES
 from fpsolve.studies.rates.cases import PARTS
 
@@ -51,5 +51,5 @@ def test_there_is_a_completion_script_for_every_common_shell(shell):
 
 
 def test_the_words_proposed_are_those_that_are_taken():
-    assert completion.EXAMPLES == EXAMPLES
-    assert tuple(PARTS) == completion.PARTS
+    assert options.EXAMPLES == EXAMPLES
+    assert tuple(PARTS) == options.PARTS

@@ -12,10 +12,9 @@ from matplotlib.image import imread
 from typer.testing import CliRunner
 
 from fpsolve.cli.command import command_line
-from fpsolve.cli.completion import CONFINING
 from fpsolve.cli.console import print_lines, print_table
 from fpsolve.cli.frame import command
-from fpsolve.cli.options import NoFigures, Out
+from fpsolve.cli.options import CONFINING, NoFigures, Out
 from fpsolve.cli.potentials import PARAMETERS, Kind, Parameters, with_parameters
 from fpsolve.errors import MassDriftError, RunInterrupted
 from fpsolve.model.potentials.dictionaries import KINDS

@@ -244,7 +244,7 @@ def test_an_interrupt_elsewhere_leaves_nothing(fpsolve, config, tmp_path, monkey
     def interrupted(*arguments):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("fpsolve.cli.ensemble.print_paths_plan", interrupted)
+    monkeypatch.setattr("fpsolve.cli.plan.print_paths_plan", interrupted)
     assert_mistake(fpsolve("paths", config, "--out", "out"), "interrupted", 130)
     assert not (tmp_path / "out").exists() or not files(tmp_path / "out")
 

@@ -19,8 +19,7 @@ from fpsolve.cli.config import (
     load_config,
     read_config,
 )
-from fpsolve.cli.config.complaints import _SECTIONS
-from fpsolve.cli.config.names import suggestion
+from fpsolve.cli.config.complaints import _SECTIONS, suggestion
 from fpsolve.density.suggestions import suggest_step
 from fpsolve.errors import ConfigurationError
 from fpsolve.studies.suggested_grid import suggest_grid

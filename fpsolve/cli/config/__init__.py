@@ -1,8 +1,13 @@
 """Runs and samplings described in TOML files."""
 
-from fpsolve.cli.config.examples import EXAMPLES, PATHS_EXAMPLE, example_path
 from fpsolve.cli.config.paths import PathsConfig, PathsProblem
-from fpsolve.cli.config.reading import load_config, read_config
+from fpsolve.cli.config.reading import (
+    EXAMPLES,
+    PATHS_EXAMPLE,
+    example_path,
+    load_config,
+    read_config,
+)
 from fpsolve.cli.config.run import Problem, RunConfig
 
 __all__ = [

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
+from difflib import SequenceMatcher
 from typing import Any
 
 from pydantic import ValidationError
 
 from fpsolve.cli.config.description import Description
-from fpsolve.cli.config.names import suggestion
 from fpsolve.cli.config.paths import PathsConfig
 from fpsolve.cli.config.run import RunConfig
-from fpsolve.cli.config.sections import Section, kinds_of
+from fpsolve.cli.config.sections import kinds_of
 
-__all__ = ["complaints"]
+__all__ = ["complaints", "suggestion"]
 
 # The command that reads a kind of configuration.
 _COMMANDS: dict[type[Description], str] = {
@@ -26,6 +26,8 @@ _SECTIONS = {
     for config in _COMMANDS
     for name, field in config.model_fields.items()
 }
+# Share of matching letters from which a name counts as meant.
+_NEAR = 0.5
 # What TOML calls the types that pydantic speaks of.
 _TYPES = {
     "a valid number": "a number",
@@ -53,6 +55,27 @@ def complaints(error: ValidationError, config: type[Description]) -> list[str]:
         else:
             found[place] = sentence
     return list(found.values())
+
+
+def suggestion(name: str, known: Iterable[str], quote: str = "`{}`") -> str:
+    """Return the end of a sentence: "; did you mean `noise`?", or "." if none is near.
+
+    Parameters
+    ----------
+    name : str
+        What was written.
+    known : iterable of str
+        What could have been meant; the first of equally near ones is named.
+    quote : str
+        How to quote a name.
+    """
+
+    def nearness(candidate: str) -> float:
+        return SequenceMatcher(None, name, candidate).ratio()
+
+    nearest = max(known, key=nearness, default="")
+    near = nearest and nearness(nearest) >= _NEAR
+    return f"; did you mean {quote.format(nearest)}?" if near else "."
 
 
 def _other_command(error: ValidationError, config: type[Description]) -> str | None:
@@ -118,7 +141,7 @@ def _wrong_kind(name: str, entry: Mapping[str, Any]) -> str:
 
 
 def _unknown_key(name: str, kind: str | None, key: str) -> str:
-    near = suggestion(key, _section_of(name, kind).keys())
+    near = suggestion(key, _SECTIONS[name][kind].keys())
     owner = "" if kind is None else f" of the kind {kind!r}"
     keys = _keys_text(name, kind)
     return f"section [{name}]: `{key}` is not a key{owner}{near} {keys}"
@@ -164,8 +187,4 @@ def _shown(value: Any) -> str:
 
 
 def _keys_text(name: str, kind: str | None) -> str:
-    return f"Keys are {', '.join(_section_of(name, kind).keys())}."
-
-
-def _section_of(name: str, kind: str | None) -> type[Section]:
-    return _SECTIONS[name][kind]
+    return f"Keys are {', '.join(_SECTIONS[name][kind].keys())}."

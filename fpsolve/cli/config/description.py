@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import Any, cast
+from typing import Any, Self, cast
 
 from pydantic import model_validator
 
@@ -57,6 +57,12 @@ class Description(Section):
         """
         with named_section("model" if self.process is None else "process"):
             return self._model()
+
+    def changed(self, section: str, **keys: Any) -> Self:
+        """Return the configuration with the keys that are not None in a section."""
+        given = {name: value for name, value in keys.items() if value is not None}
+        changed = getattr(self, section).model_copy(update=given)
+        return self.model_copy(update={section: changed})
 
     def to_toml(self) -> str:
         """Return the configuration as TOML, with the defaults written out."""

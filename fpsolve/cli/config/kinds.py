@@ -20,6 +20,7 @@ from fpsolve.model.potentials.dictionaries import KINDS as POTENTIALS
 from fpsolve.model.process import Process
 
 __all__ = [
+    "VARIANCE",
     "CurveSection",
     "GridSection",
     "InitialSection",
@@ -32,12 +33,10 @@ __all__ = [
     "SpanSection",
 ]
 
-_TOLERANCES = tuple(
-    f"{name}_tolerance"
-    for name in ("mass", "boundary", "negative", "entropy", "circulation")
-)
 _Numbers = tuple[float, ...]
 _Matrix = tuple[tuple[float, float], tuple[float, float]]
+# One of an isotropic law, those along both axes, or a covariance matrix.
+VARIANCE = {"variance": float | tuple[float, float] | _Matrix}
 # Types that a file may hold where the annotation of a curve says less.
 _IN_A_FILE = {
     "tabulated_curve": {"s": _Numbers, "gamma1": _Numbers, "gamma2": _Numbers}
@@ -58,11 +57,7 @@ else:
         *(section(CURVES[kind], kind, _IN_A_FILE.get(kind)) for kind in CURVES)
     )
     InitialSection = one_of(
-        section(
-            initial.gaussian,
-            "gaussian",
-            {"variance": float | tuple[float, float] | _Matrix},
-        ),
+        section(initial.gaussian, "gaussian", VARIANCE),
         section(initial.equilibrium, "equilibrium"),
     )
     SchemeSection = one_of(*(section(SCHEMES[name], name) for name in SCHEMES))
@@ -136,8 +131,11 @@ class RunSection(SpanSection):
 
     def tolerances(self) -> dict[str, float]:
         """Return the tolerances of `fpsolve.solve` that are given, by their names."""
-        given = {name: getattr(self, name) for name in _TOLERANCES}
-        return {name: value for name, value in given.items() if value is not None}
+        return {
+            name: value
+            for name, value in self
+            if name.endswith("_tolerance") and value is not None
+        }
 
     def step(self, suggested: float) -> float:
         """Return the largest step, suggested or below, that meets all saving points.

@@ -9,7 +9,7 @@ from pydantic import model_validator
 
 from fpsolve._support.checks import check_integer
 from fpsolve.cli.config.description import Description, named_section
-from fpsolve.cli.config.kinds import GridSection, OutputSection, SpanSection
+from fpsolve.cli.config.kinds import VARIANCE, GridSection, OutputSection, SpanSection
 from fpsolve.cli.config.sections import Section, one_of, section
 from fpsolve.model.laydown import LayDownModel
 from fpsolve.paths.laws import EquilibriumLaw, GaussianLaw, PointLaw
@@ -22,15 +22,7 @@ if TYPE_CHECKING:
 else:
     StartSection = one_of(
         section(PointLaw, "point"),
-        section(
-            GaussianLaw,
-            "gaussian",
-            {
-                "variance": float
-                | tuple[float, float]
-                | tuple[tuple[float, float], tuple[float, float]]
-            },
-        ),
+        section(GaussianLaw, "gaussian", VARIANCE),
         section(EquilibriumLaw, "equilibrium"),
     )
 
@@ -88,16 +80,13 @@ class PathsConfig(Description):
             If sections do not fit each other.
         """
         model = self.build_model()
-        arguments: dict[str, Any] = {
-            "n_paths": self.paths.n_paths,
-            "s_end": self.paths.s_end,
-            "ds": self.paths.ds,
-            "seed": _drawn_seed() if self.paths.seed is None else self.paths.seed,
+        arguments = {
+            **self.paths.model_dump(exclude={"save_every"}),
             "initial": self._law(model),
             "save_at": self.paths.saves(),
-            "method": self.paths.method,
-            "keep": self.paths.keep,
         }
+        if self.paths.seed is None:
+            arguments["seed"] = int(np.random.SeedSequence().generate_state(1)[0])
         if self.histogram is not None:
             with named_section("histogram"):
                 arguments["histogram"] = self.histogram.make()
@@ -105,15 +94,10 @@ class PathsConfig(Description):
 
     def resolved(self, problem: PathsProblem) -> PathsConfig:
         """Return the configuration with the seed of `problem` in it."""
-        seed = {"seed": problem.arguments["seed"]}
-        return self.model_copy(update={"paths": self.paths.model_copy(update=seed)})
+        return self.changed("paths", seed=problem.arguments["seed"])
 
     def _law(self, model: LayDownModel) -> Any:
         if self.start is None:
             return PointLaw()
         with named_section("start"):
             return self.start.make(potential=model.potential)
-
-
-def _drawn_seed() -> int:
-    return int(np.random.SeedSequence().generate_state(1)[0])

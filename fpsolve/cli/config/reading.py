@@ -1,23 +1,28 @@
-"""Configuration files, and what is said about the wrong ones."""
+"""Configuration files and packaged examples, and what is said about wrong ones."""
 
 from __future__ import annotations
 
 import os
 import tomllib
+from importlib.resources import files
 from pathlib import Path
 from typing import Any, TypeVar, overload
 
 from pydantic import ValidationError
 
 from fpsolve._support.checks import check_path
-from fpsolve.cli.config.complaints import complaints
+from fpsolve.cli.config.complaints import complaints, suggestion
 from fpsolve.cli.config.description import Description
 from fpsolve.cli.config.run import RunConfig
 from fpsolve.errors import ConfigurationError
 
-__all__ = ["load_config", "read_config"]
+__all__ = ["EXAMPLES", "PATHS_EXAMPLE", "example_path", "load_config", "read_config"]
 
 T = TypeVar("T", bound=Description)
+
+# What `fpsolve run` can solve, and what `fpsolve paths` samples.
+EXAMPLES = ("laydown", "spunbond")
+PATHS_EXAMPLE = "fibres"
 
 
 @overload
@@ -59,10 +64,7 @@ def read_config(text: str, source: str = ..., *, kind: type[T]) -> T: ...
 
 
 def read_config(
-    text: str,
-    source: str = "configuration",
-    *,
-    kind: type[Description] = RunConfig,
+    text: str, source: str = "configuration", *, kind: type[Description] = RunConfig
 ) -> Description:
     """Check a configuration given as TOML text.
 
@@ -89,6 +91,27 @@ def read_config(
     except ValidationError as error:
         lines = "\n".join(complaints(error, kind))
         raise ConfigurationError(f"{source}, {lines}") from None
+
+
+def example_path(name: str) -> Path:
+    """Return the TOML file of a packaged example.
+
+    Parameters
+    ----------
+    name : {"laydown", "spunbond", "fibres"}
+        B = ‖ξ‖²/2 with A = 1, a spunbond process in SI units, or paths on a belt.
+
+    Raises
+    ------
+    ConfigurationError
+        If there is no such example.
+    """
+    if name not in (*EXAMPLES, PATHS_EXAMPLE):
+        raise ConfigurationError(
+            f"`example` must be one of {', '.join(EXAMPLES)}, got {name!r}"
+            f"{suggestion(name, EXAMPLES)}"
+        )
+    return Path(str(files("fpsolve") / "examples" / f"{name}.toml"))
 
 
 def _text(path: Path) -> str:

@@ -90,11 +90,6 @@ class RunConfig(Description):
         tables = {**self.model_dump(exclude_none=True), "grid": grid, "run": run}
         return RunConfig.model_validate(tables)
 
-    def without_figures(self) -> RunConfig:
-        """Return the configuration with figures switched off."""
-        output = self.output.model_copy(update={"figures": False})
-        return self.model_copy(update={"output": output})
-
     def _grid(self, model: LayDownModel) -> PhaseSpaceGrid:
         if self.grid is None:
             return suggest_grid(
