@@ -2,32 +2,50 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
-from fpsolve._support.checks import check_call, shown
+from fpsolve._support.checks import check_call, check_noise, shown
 
-__all__ = ["check_functions", "names_of", "series_of"]
+__all__ = ["check_functions", "chosen_parts", "noises_of", "series_of"]
 
 
-def series_of(noises: Any, name: str = "noises") -> list[Any]:
+def series_of(values: Any, name: str = "noises", what: str = "numbers") -> list[Any]:
     """Return a series as a list; TypeError unless it is one."""
-    if isinstance(noises, str | bytes) or not isinstance(noises, Iterable):
+    if isinstance(values, str | bytes) or not isinstance(values, Iterable):
         raise TypeError(
-            f"`{name}` must be a series of numbers, got {shown(noises)}; a single one "
+            f"`{name}` must be a series of {what}, got {shown(values)}; a single one "
             "needs brackets too."
         )
-    return list(noises)
+    return list(values)
 
 
-def names_of(parts: Any, name: str = "parts") -> list[str]:
-    """Return a series of names as a list; TypeError unless it is one."""
-    if isinstance(parts, str | bytes) or not isinstance(parts, Iterable):
-        raise TypeError(
-            f"`{name}` must be a series of names, got {shown(parts)}; a single one "
-            "needs brackets too."
+def noises_of(noises: Any, remedy: str = "") -> list[float]:
+    """Return the noises as floats; an error unless there are some, all positive."""
+    listed = [check_noise("noises", noise, remedy) for noise in series_of(noises)]
+    if not listed:
+        raise ValueError("`noises` must hold at least one noise, got none.")
+    return listed
+
+
+def chosen_parts(parts: Any, possible: Sequence[str], whose: str) -> list[str]:
+    """Return the parts asked for, all if None, in the order in which they are possible.
+
+    Parameters
+    ----------
+    parts : iterable of str, or None
+    possible : sequence of str
+    whose : str
+        What makes others impossible, for the message.
+    """
+    chosen = possible if parts is None else series_of(parts, "parts", "names")
+    unknown = [part for part in chosen if part not in possible]
+    if unknown or not chosen:
+        raise ValueError(
+            f"`parts` must be among {', '.join(possible)} for this {whose}, got "
+            f"{', '.join(map(str, unknown)) or 'none'}."
         )
-    return list(parts)
+    return [part for part in possible if part in chosen]
 
 
 def check_functions(functions: Any) -> dict[str, Callable[..., Any]]:

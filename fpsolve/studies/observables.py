@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from scipy.integrate import cubature
 
 from fpsolve.model.potentials.potential import Potential
+from fpsolve.studies.arguments import check_functions
 
 __all__ = [
     "Circulation",
@@ -21,6 +22,7 @@ __all__ = [
     "default_observables",
     "direction",
     "equilibrium_moments",
+    "functions_of",
     "position",
     "square",
 ]
@@ -86,6 +88,13 @@ def default_observables(potential: Potential) -> dict[str, Observable]:
         "direction": direction,
         "circulation": Circulation(potential),
     }
+
+
+def functions_of(functions: Any, potential: Potential) -> dict[str, Observable]:
+    """The functions by name, checked; `default_observables` for None."""
+    if functions is None:
+        return default_observables(potential)
+    return check_functions(functions)
 
 
 @dataclass(frozen=True)

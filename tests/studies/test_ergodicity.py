@@ -67,9 +67,8 @@ def shaped_dataset(c1, c2, c3, *, noises=(0.3, 0.6, 1.0, 1.7, 3.0), scatter=1e-9
     deviations = 1 + scatter * rng.standard_normal((20, noises.size, 1, s.size))
     squared = (2.0 * error[:, None]) ** 2 * deviations
     moments = EquilibriumMoments(np.array([0.5]), np.array([2.0]))
-    return averages_dataset(squared, noises, s, ["mine"], moments).assign_attrs(
-        formula="B", n_paths=20
-    )
+    about = {"n_paths": 20}
+    return averages_dataset(squared, noises, s, ["mine"], moments, QUADRATIC, about)
 
 
 # Expectations

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
@@ -12,28 +11,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fpsolve._support.blas import one_blas_thread
-from fpsolve._support.checks import (
-    check_integer,
-    check_kind,
-    check_noise,
-    check_positive,
-)
-from fpsolve._support.labels import made_with, marked
+from fpsolve._support.checks import check_integer, check_kind, check_positive
+from fpsolve._support.labels import labels, to_json
 from fpsolve._support.progress import ProgressCallback, reporting
 from fpsolve.evolution.call import recorded
 from fpsolve.model.laydown import LayDownModel
-from fpsolve.model.potentials.dictionaries import potential_to_dict
 from fpsolve.model.potentials.potential import Potential
 from fpsolve.paths.laws import EquilibriumLaw
 from fpsolve.paths.sampling import sample_paths
-from fpsolve.studies.arguments import check_functions, series_of
+from fpsolve.studies.arguments import noises_of, series_of
 from fpsolve.studies.ergodicity.asymptotic_variance import SETTLED
 from fpsolve.studies.ergodicity.dataset import averages_dataset
 from fpsolve.studies.ergodicity.fit import ErgodicFit, fit_ergodic_error
 from fpsolve.studies.observables import (
     Observable,
-    default_observables,
     equilibrium_moments,
+    functions_of,
 )
 
 if TYPE_CHECKING:
@@ -148,12 +141,10 @@ def ergodic_averages(
     sequence = _own_sequence(seed)
     noises = series_of(noises)
     check_kind("potential", potential, Potential, "for instance QuadraticPotential()")
-    if functions is not None:
-        functions = check_functions(functions)
-    functions = dict(default_observables(potential) if functions is None else functions)
-    _check(potential, functions, n_paths, n_saved)
+    functions = functions_of(functions, potential)
+    _check(potential, n_paths, n_saved)
     s_end = check_positive("s_end", s_end)
-    amplitudes = _amplitudes(noises)
+    amplitudes = np.array(noises_of(noises))
     moments = equilibrium_moments(potential, functions)
     saved, steps = _arclengths(amplitudes, s_end, ds, n_saved)
     if ds is None:
@@ -165,28 +156,18 @@ def ergodic_averages(
         )
     ]
     squared = np.stack(list(_run(tasks, client, progress)), axis=1)
-    dataset = averages_dataset(squared, amplitudes, saved, list(functions), moments)
-    return (
-        marked(dataset, "averages")
-        .assign(ds=("noise", steps, {"long_name": "step ds", "units": "1"}))
-        .assign_attrs(
-            title="Averages along paths started from the equilibrium",
-            equation="(12) of Klar, Marheineke and Wegener (2009)",
-            potential=json.dumps(potential_to_dict(potential)),
-            formula=potential.formula,
-            n_paths=n_paths,
-            seed=json.dumps([sequence.entropy, *sequence.spawn_key]),
-            **made_with(),
-        )
+    about = {
+        "equation": "(12) of Klar, Marheineke and Wegener (2009)",
+        "n_paths": n_paths,
+        "seed": to_json([sequence.entropy, *sequence.spawn_key]),
+    }
+    dataset = averages_dataset(
+        squared, amplitudes, saved, list(functions), moments, potential, about
     )
+    return dataset.assign(ds=("noise", steps, labels("step ds")))
 
 
-def _check(
-    potential: Potential,
-    functions: Mapping[str, Observable],
-    n_paths: int,
-    n_saved: int,
-) -> None:
+def _check(potential: Potential, n_paths: int, n_saved: int) -> None:
     if not potential.normalisable:
         raise ValueError(
             f"`potential` must have a normalisable exp(-B), got {potential!r}; without "
@@ -205,13 +186,6 @@ def _check_time(noises: Array, path_steps: Array) -> None:
             f"with it {path_steps[worst]:.1g} steps of 1/(2 A^2) on all paths; choose "
             "`ds`, a shorter `s_end` or fewer paths."
         )
-
-
-def _amplitudes(noises: Iterable[float]) -> Array:
-    amplitudes = np.array([check_noise("noises", noise) for noise in noises])
-    if not amplitudes.size:
-        raise ValueError("`noises` must hold at least one noise, got none.")
-    return amplitudes
 
 
 def _own_sequence(seed: int | np.random.SeedSequence) -> np.random.SeedSequence:

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from fpsolve._support.labels import labels
+from fpsolve.model.potentials.potential import Potential
 from fpsolve.studies.ergodicity.asymptotic_variance import settled_slope
 from fpsolve.studies.observables import EquilibriumMoments
+from fpsolve.studies.sweeps.study import study_dataset, texts
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -25,6 +29,8 @@ def averages_dataset(
     saved: Array,
     names: list[str],
     moments: EquilibriumMoments,
+    potential: Potential,
+    about: Mapping[str, Any],
 ) -> xr.Dataset:
     """Label squared errors, and what follows from them.
 
@@ -39,21 +45,22 @@ def averages_dataset(
         Of the functions.
     moments : EquilibriumMoments
         Of the functions, in their order.
+    potential : Potential
+    about : mapping
+        Further attributes.
     """
-    import xarray as xr
-
     numbers = _numbers(squared, saved, moments)
-    return xr.Dataset(
-        {
-            name: (where, values, _labels(meaning))
-            for name, (where, values, meaning) in numbers.items()
-        },
-        {
-            "noise": ("noise", noises, _labels("noise A")),
-            "function": ("function", np.array(names, dtype=object)),
-            "s": ("s", saved, _labels("arclength s")),
-        },
-    )
+    variables = {
+        name: (where, values, labels(meaning))
+        for name, (where, values, meaning) in numbers.items()
+    }
+    coordinates = {
+        "noise": ("noise", noises, labels("noise A")),
+        "function": ("function", texts(names)),
+        "s": ("s", saved, labels("arclength s")),
+    }
+    title = "Averages along paths started from the equilibrium"
+    return study_dataset("averages", title, potential, variables, coordinates, about)
 
 
 def _numbers(
@@ -89,7 +96,3 @@ def _numbers(
 def _standard_error(batches: Array) -> Array:
     """Of the mean over batches."""
     return np.asarray(batches.std(axis=0, ddof=1) / math.sqrt(len(batches)))
-
-
-def _labels(meaning: str) -> dict[str, str]:
-    return {"long_name": meaning, "units": "1"}

@@ -5,22 +5,21 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from itertools import islice
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fpsolve._support.checks import check_noise
-from fpsolve._support.labels import labels, made_with, marked, to_json
+from fpsolve._support.labels import labels
 from fpsolve.errors import MemoryLimitError, ToleranceError
 from fpsolve.evolution.call import recorded
 from fpsolve.model.laydown import LayDownModel
-from fpsolve.model.potentials.dictionaries import potential_to_dict
 from fpsolve.model.potentials.potential import Potential
 from fpsolve.reduced.energy.process import EnergyProcess
 from fpsolve.spectral.bases.choice import discretisation_for
 from fpsolve.spectral.bases.sectors import Sector
 from fpsolve.spectral.eigen.spectrum import spectrum
-from fpsolve.studies.arguments import series_of
+from fpsolve.studies.arguments import noises_of
+from fpsolve.studies.sweeps.study import study_dataset, texts
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -70,13 +69,8 @@ def small_noise_spectrum(
     ----------
     [KMW09]_, equations (15) and (16).
     """
-    import xarray as xr
-
     process = EnergyProcess(potential, 1.0)
-    listed = [check_noise("noises", noise) for noise in series_of(noises)]
-    if not listed:
-        raise ValueError("`noises` must hold at least one noise, got none.")
-    amplitudes = np.unique(listed)[::-1]
+    amplitudes = np.unique(noises_of(noises))[::-1]
     found = {family: process.spectrum(2, family) for family in FAMILIES}
     # The even family begins with the constants, which do not decay.
     places = {"even": 1, "odd": 0}
@@ -88,25 +82,19 @@ def small_noise_spectrum(
     limits = [found[family].eigenvalues[places[family]] for family in FAMILIES]
     uncertain = [found[family].errors[places[family]] for family in FAMILIES]
     over = ("family", "noise")
-    variables: dict[str, Any] = {
+    variables = {
         "rate": (over, rates, labels("slowest real rate of the sector M = 0 over A²")),
         "rate_error": (over, errors, labels("truncation error of the rate over A²")),
         "limit": ("family", limits, labels("rate of the energy process for A = 1")),
         "limit_error": ("family", uncertain, labels("error of the limit")),
     }
     coordinates = {
-        "family": ("family", np.array(FAMILIES, dtype=object)),
+        "family": ("family", texts(FAMILIES)),
         "noise": ("noise", amplitudes, labels("noise amplitude A")),
     }
-    attributes = {
-        "title": "Spectrum in the limit of little noise",
-        "potential": to_json(potential_to_dict(potential)),
-        "formula": potential.formula,
-        "tolerance": tolerance,
-        **made_with(),
-    }
-    dataset = xr.Dataset(variables, coordinates, attributes)
-    return marked(dataset, "small-noise-spectrum")
+    kind, title = "small-noise-spectrum", "Spectrum in the limit of little noise"
+    about = {"tolerance": tolerance}
+    return study_dataset(kind, title, potential, variables, coordinates, about)
 
 
 def _slowest(

@@ -10,9 +10,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve._support.checks import check_finite, check_noise, check_positive
+from fpsolve._support.checks import check_finite, check_kind, check_positive
 from fpsolve._support.labels import to_json
-from fpsolve.errors import RunInterrupted
 from fpsolve.evolution.call import recorded
 from fpsolve.model.laydown import LayDownModel
 from fpsolve.model.potentials.potential import Potential
@@ -22,7 +21,7 @@ from fpsolve.reduced.hydrodynamic.effective_potential import (
     EffectivePotential,
     slope_of,
 )
-from fpsolve.studies.arguments import names_of, series_of
+from fpsolve.studies.arguments import chosen_parts, noises_of
 from fpsolve.studies.constants.poincare import require_confining
 from fpsolve.studies.limits.large_noise_cases import (
     PARTS,
@@ -31,7 +30,8 @@ from fpsolve.studies.limits.large_noise_cases import (
     resolution_for,
 )
 from fpsolve.studies.limits.large_noise_dataset import large_noise_dataset
-from fpsolve.studies.sweeps.sweep import SweepProgress, sweep
+from fpsolve.studies.sweeps.study import swept
+from fpsolve.studies.sweeps.sweep import Case, SweepProgress
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -150,8 +150,10 @@ def large_noise_limit(
     """
     amplitudes = checked_noises(potential, noises)
     pull = checked_pull(potential, belt_speed_scale, amplitudes)
-    chosen = checked_parts(potential, pull, parts)
-    law = checked_law(start_for(potential) if p0 is None else p0)
+    possible = possible_parts(potential, pull)
+    chosen = chosen_parts(parts, possible, "potential and belt")
+    law: GaussianLaw = start_for(potential) if p0 is None else p0
+    check_law(law)
     options = options_of(
         potential,
         pull,
@@ -170,17 +172,14 @@ def large_noise_limit(
         "fixed_speed": float(fixed_speed), "p0": to_json(law.to_dict()),
         "quick": int(quick),
     }  # fmt: skip
-    try:
-        found = sweep(
-            large_noise_case, cases, client=client, workers=workers,
-            directory=directory, progress=progress,
-        )  # fmt: skip
-    except RunInterrupted as interrupt:
-        partial = large_noise_dataset(
-            potential, amplitudes, chosen, interrupt.solution, about
-        )
-        raise RunInterrupted(partial) from None
-    return large_noise_dataset(potential, amplitudes, chosen, found, about)
+
+    def dataset(found: list[Case]) -> xr.Dataset:
+        return large_noise_dataset(potential, amplitudes, chosen, found, about)
+
+    return swept(
+        large_noise_case, cases, dataset,
+        client=client, workers=workers, directory=directory, progress=progress,
+    )  # fmt: skip
 
 
 def options_of(
@@ -222,10 +221,7 @@ def checked_noises(potential: Potential, noises: Iterable[float]) -> Array:
     # Says what is wrong with a potential that is none.
     LayDownModel(potential, 1.0)
     require_confining(potential)
-    listed = [check_noise("noises", noise) for noise in series_of(noises)]
-    if not listed:
-        raise ValueError("`noises` must hold at least one noise, got none.")
-    return np.unique(listed)
+    return np.unique(noises_of(noises))
 
 
 def checked_pull(potential: Potential, scale: Any, amplitudes: Array) -> float:
@@ -258,38 +254,23 @@ def checked_speed(speed: Any) -> float:
     return number
 
 
-def checked_law(p0: Any) -> GaussianLaw:
-    """The start, which needs a direction for the parts that are about it."""
-    if not isinstance(p0, GaussianLaw):
-        raise TypeError(
-            f"`p0` must be a GaussianLaw, got {p0!r}; both sides start from its "
-            "formula."
-        )
+def check_law(p0: GaussianLaw) -> None:
+    """Raise unless the start has a direction, for the parts that are about it."""
+    check_kind("p0", p0, GaussianLaw, "both sides start from its formula")
     if not p0.concentration > 0:
         raise ValueError(
             "`p0` must have a positive concentration, got 0; the parts with a uniform "
             "start leave it out by themselves."
         )
-    return p0
 
 
-def checked_parts(
-    potential: Potential, pull: float, parts: Iterable[str] | None
-) -> list[str]:
-    """The parts, in the order of `PARTS`."""
+def possible_parts(potential: Potential, pull: float) -> list[str]:
+    """The parts of a study that potential and belt allow."""
     quadratic = isinstance(potential, QuadraticPotential)
-    possible = [
+    return [
         part
         for part in PARTS
         if (pull or part not in ("stationary", "belt_directed", "belt_uniform"))
         and (quadratic or part != "fixed_speed")
         and (quadratic or potential.isotropic or part != "gap")
     ]
-    chosen = possible if parts is None else names_of(parts)
-    unknown = [part for part in chosen if part not in possible]
-    if unknown or not chosen:
-        raise ValueError(
-            f"`parts` must be among {', '.join(possible)} for this potential and belt, "
-            f"got {', '.join(map(str, unknown)) or 'none'}."
-        )
-    return [part for part in PARTS if part in chosen]

@@ -8,36 +8,17 @@ from dataclasses import dataclass
 
 __all__ = ["Quantity", "quantities_of"]
 
-_NAMES = {
-    "marginal": "‖∫p dα − 𝒫‖₁",
-    "joint": "‖p − 𝒫/2π‖₁",
-    "joint_p1": "‖p − 𝒫/2π − εp₁‖₁",
-    "mean": "difference of E ξ",
-    "second_moment": "difference of E‖ξ‖²",
-    "entropy": "difference of H(p | e^{−B})",
-    "direction": "‖E τ‖, which is 0 by 𝒫/2π",
-    "direction_p1": "difference of E τ with εp₁",
-}
-_ORDERS = {
-    "marginal": 2.0,
-    "joint": 1.0,
-    "joint_p1": 2.0,
-    "mean": 2.0,
-    "second_moment": 2.0,
-    "entropy": 2.0,
-    "direction": 1.0,
-    "direction_p1": 3.0,
-}
-# From the start as given, the layer's displacement by 2ε Eτ is missed. The entropy
-# and the direction without p₁ need no second look.
-_UNCORRECTED = {
-    "marginal": 1.0,
-    "joint": 1.0,
-    "joint_p1": 1.0,
-    "mean": 1.0,
-    "second_moment": 1.0,
-    "entropy": 1.0,
-    "direction_p1": 2.0,
+# Order, order from the start as given, and meaning. The start as given misses the
+# displacement of the layer by 2ε Eτ; the direction without p₁ needs no second look.
+_MEASURES: dict[str, tuple[float, float | None, str]] = {
+    "marginal": (2.0, 1.0, "‖∫p dα − 𝒫‖₁"),
+    "joint": (1.0, 1.0, "‖p − 𝒫/2π‖₁"),
+    "joint_p1": (2.0, 1.0, "‖p − 𝒫/2π − εp₁‖₁"),
+    "mean": (2.0, 1.0, "difference of E ξ"),
+    "second_moment": (2.0, 1.0, "difference of E‖ξ‖²"),
+    "entropy": (2.0, 1.0, "difference of H(p | e^{−B})"),
+    "direction": (1.0, None, "‖E τ‖, which is 0 by 𝒫/2π"),
+    "direction_p1": (3.0, 2.0, "difference of E τ with εp₁"),
 }
 _PLACES = {
     "stationary": "stationary, v = wε",
@@ -106,15 +87,16 @@ def _measures(part: str, quadratic: bool) -> dict[str, tuple[float, str]]:
             "mean_linear": (0.0, "relative difference of E ξ1 from A²vσ1²"),
             "mean_balance": (2.0, f"relative difference of {_BALANCE}"),
         }
-    measures = {name: (order, _NAMES[name]) for name, order in _ORDERS.items()}
+    measures = {name: (order, text) for name, (order, _, text) in _MEASURES.items()}
     if part == "stationary":
         # E cos α = −v, and p₁ has it.
-        measures["direction_p1"] = (math.nan, _NAMES["direction_p1"])
+        measures["direction_p1"] = (math.nan, measures["direction_p1"][1])
         if quadratic:
             measures["mean_balance"] = (2.0, f"difference of {_BALANCE}")
     if part.endswith("directed"):
         measures |= {
-            f"{name}_uncorrected": (order, f"{_NAMES[name]}, start not corrected")
-            for name, order in _UNCORRECTED.items()
+            f"{name}_uncorrected": (order, f"{text}, start not corrected")
+            for name, (_, order, text) in _MEASURES.items()
+            if order is not None
         }
     return measures

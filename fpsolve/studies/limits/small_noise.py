@@ -3,41 +3,62 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fpsolve._support.checks import (
     check_finite,
     check_integer,
-    check_noise,
+    check_kind,
     check_positive,
 )
-from fpsolve.errors import RunInterrupted
 from fpsolve.evolution.call import recorded
 from fpsolve.model.potentials.potential import Potential
 from fpsolve.paths.laws import GaussianLaw
 from fpsolve.reduced.energy.process import EnergyProcess
-from fpsolve.studies.arguments import series_of
+from fpsolve.studies.arguments import noises_of, series_of
 from fpsolve.studies.limits.small_noise_case import small_noise_case
 from fpsolve.studies.limits.small_noise_dataset import small_noise_dataset
-from fpsolve.studies.sweeps.sweep import SweepProgress, sweep
+from fpsolve.studies.sweeps.study import swept
+from fpsolve.studies.sweeps.sweep import Case, SweepProgress
 
 if TYPE_CHECKING:
     import xarray as xr
 
 __all__ = ["small_noise_limit"]
 
-Array = NDArray[np.float64]
-
-# Width of the ξ cells over the radius of the circle at A = 0.2, step, and paths.
-_SPACING, _DS, _N_PATHS = 0.12, 0.125, 1_000_000
-_QUICK_SPACING, _QUICK_DS, _QUICK_N_PATHS = 0.16, 0.25, 100_000
 # Errors of a cell accumulate over a length of order A⁻² and fall with its eighth
 # power.
 _REFERENCE_NOISE, _POWER = 0.2, 0.25
+
+
+@dataclass(frozen=True)
+class Settings:
+    """How accurate a study is.
+
+    Attributes
+    ----------
+    cell : float
+        Width of the ξ cells over the radius of the circle at A = 0.2.
+    ds : float
+        Longer step of the extrapolated runs.
+    n_paths : int
+    """
+
+    cell: float = 0.12
+    ds: float = 0.125
+    n_paths: int = 1_000_000
+
+    def spacing(self, noise: float) -> float:
+        """Width of the cells at a noise."""
+        finer: float = min(1.0, noise / _REFERENCE_NOISE) ** _POWER
+        return self.cell * finer
+
+
+QUICK = Settings(cell=0.16, ds=0.25, n_paths=100_000)
 
 
 @recorded()
@@ -111,76 +132,42 @@ def small_noise_limit(
     ----------
     [KMW09]_, section 3.1.2, equations (13) to (16).
     """
-    amplitudes = _checked_noises(potential, noises)
-    scales = np.array(
-        [
-            check_finite("belt_speed_scales", w)
-            for w in series_of(belt_speed_scales, "belt_speed_scales")
-        ]
-    )
-    law = _default_start(potential) if p0 is None else _checked_start(p0)
+    # Says what is wrong with a potential that has no orbits.
+    EnergyProcess(potential, 1.0)
+    # Descending: the limit is at the end.
+    amplitudes = np.unique(noises_of(noises))[::-1]
+    speeds = series_of(belt_speed_scales, "belt_speed_scales")
+    scales = np.array([check_finite("belt_speed_scales", w) for w in speeds])
+    p0 = _default_start(potential) if p0 is None else p0
+    check_kind("p0", p0, GaussianLaw, "its law of G is computed along the orbits")
+    settings = QUICK if quick else Settings()
+    ds = settings.ds if ds is None else ds
+    n_paths = settings.n_paths if n_paths is None else n_paths
     options = {
-        "law": law,
+        "law": p0,
         "slow_length": check_positive("slow_length", slow_length),
-        "ds": _checked_step(ds, quick),
-        "n_paths": _checked_paths(n_paths, quick),
+        "ds": check_positive("ds", ds),
+        "n_paths": check_integer("n_paths", n_paths, at_least=0),
         "seed": check_integer("seed", seed, at_least=0),
     }
     cases = [
         {
             "potential": potential, "noise": float(noise), "belt_speed_scale": float(w),
-            "spacing": _spacing(float(noise), quick), **options,
+            "spacing": settings.spacing(float(noise)), **options,
         }
         for w in scales
         for noise in amplitudes
     ]  # fmt: skip
-    shape = scales, amplitudes
-    try:
-        found = sweep(
-            small_noise_case, cases, client=client, workers=workers,
-            directory=directory, progress=progress,
-        )  # fmt: skip
-    except RunInterrupted as interrupt:
-        partial = small_noise_dataset(potential, *shape, interrupt.solution, options)
-        raise RunInterrupted(partial) from None
-    return small_noise_dataset(potential, *shape, found, options)
 
+    def dataset(found: list[Case]) -> xr.Dataset:
+        return small_noise_dataset(potential, scales, amplitudes, found, options)
 
-def _checked_noises(potential: Potential, noises: Iterable[float]) -> Array:
-    """The noises, descending: the limit is at the end."""
-    EnergyProcess(potential, 1.0)
-    listed = [check_noise("noises", noise) for noise in series_of(noises)]
-    if not listed:
-        raise ValueError("`noises` must hold at least one noise, got none.")
-    return np.unique(listed)[::-1]
-
-
-def _checked_start(p0: Any) -> GaussianLaw:
-    if not isinstance(p0, GaussianLaw):
-        raise TypeError(
-            f"`p0` must be a GaussianLaw, got {p0!r}; its law of G is computed along "
-            "the orbits."
-        )
-    return p0
-
-
-def _checked_step(ds: float | None, quick: bool) -> float:
-    if ds is None:
-        return _QUICK_DS if quick else _DS
-    return check_positive("ds", ds)
-
-
-def _checked_paths(n_paths: int | None, quick: bool) -> int:
-    if n_paths is None:
-        return _QUICK_N_PATHS if quick else _N_PATHS
-    return check_integer("n_paths", n_paths, at_least=0)
+    return swept(
+        small_noise_case, cases, dataset,
+        client=client, workers=workers, directory=directory, progress=progress,
+    )  # fmt: skip
 
 
 def _default_start(potential: Potential) -> GaussianLaw:
     radius = EnergyProcess(potential, 1.0).radius
     return GaussianLaw((radius, 0.0), 0.3 * radius**2, np.pi / 4, 2.0)
-
-
-def _spacing(noise: float, quick: bool) -> float:
-    finer: float = min(1.0, noise / _REFERENCE_NOISE) ** _POWER
-    return (_QUICK_SPACING if quick else _SPACING) * finer

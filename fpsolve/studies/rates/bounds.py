@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -19,15 +18,18 @@ from fpsolve.studies.constants.gap_expansion import next_gap_term
 from fpsolve.studies.constants.poincare import poincare_constant, require_confining
 
 __all__ = [
+    "NO_DECAY",
     "HypocoerciveBound",
     "averaging_bound",
-    "checked_noise",
     "hypocoercive_bound",
     "large_noise_asymptote",
     "small_noise_asymptote",
 ]
 
 Array = NDArray[np.float64]
+
+# What a noise of zero means, for messages.
+NO_DECAY = "; without noise the density never forgets its start"
 
 
 @dataclass(frozen=True)
@@ -82,7 +84,7 @@ def hypocoercive_bound(
     ----------
     [DKMS13]_, theorem 1; [DMS15]_.
     """
-    noise = checked_noise("noise", noise)
+    noise = check_noise("noise", noise, NO_DECAY)
     if not factor > 1:
         raise ValueError(
             f"`factor` must be above 1, got {factor:g}; no rate is proven without one."
@@ -131,7 +133,7 @@ def averaging_bound(potential: Potential, noise: float) -> float:
     ----------
     [KMW09]_, theorem 3.3.
     """
-    noise = checked_noise("noise", noise)
+    noise = check_noise("noise", noise, NO_DECAY)
     if not (isinstance(potential, QuadraticPotential) and potential.isotropic):
         raise ValueError(
             "`potential` must be an isotropic QuadraticPotential for this bound, got "
@@ -166,12 +168,6 @@ def large_noise_asymptote(potential: Potential, noise: ArrayLike) -> Array:
     share = correction / noise**4
     rate = poincare / noise**2 * (1 + share)
     return np.asarray(np.where(np.abs(share) <= 0.5, rate, np.nan))
-
-
-def checked_noise(name: str, noise: Any) -> float:
-    """The noise as a float; ValueError unless it is positive."""
-    remedy = "; without noise the density never forgets its start"
-    return check_noise(name, noise, remedy)
 
 
 def _unit_of(potential: Potential) -> tuple[float, Potential]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -10,8 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import nnls
 
-from fpsolve._support.labels import labels, made_with, marked, to_json
-from fpsolve.model.potentials.dictionaries import potential_to_dict
+from fpsolve._support.labels import labels, to_json
 from fpsolve.model.potentials.potential import Potential
 from fpsolve.studies.rates.bounds import (
     averaging_bound,
@@ -21,60 +19,69 @@ from fpsolve.studies.rates.bounds import (
 )
 from fpsolve.studies.rates.cases import PARTS, sectors_shown
 from fpsolve.studies.rates.modes import CLASSES
+from fpsolve.studies.sweeps.study import (
+    TEXT,
+    Column,
+    by_noise_and_part,
+    outcomes,
+    study_dataset,
+    texts,
+    variables_of,
+)
 from fpsolve.studies.sweeps.sweep import Case
 
 if TYPE_CHECKING:
     import xarray as xr
 
-
 __all__ = ["rates_dataset", "theory_curves"]
 
 Array = NDArray[np.float64]
 
-# Name: (dimensions after noise, meaning), by part.
-_NUMBERS: dict[str, dict[str, tuple[tuple[str, ...], str]]] = {
+# What the cases of every part return.
+_COLUMNS: dict[str, dict[str, Column]] = {
     "relaxation": {
-        "inverse_decay_rate": ((), "inverse decay rate I = ∫₀^S H ds"),
-        "inverse_decay_rate_error": ((), "error of I: step, grid and quadrature"),
-        "inverse_decay_rate_step_error": ((), "part of the error from the step"),
-        "inverse_decay_rate_grid_error": ((), "part of the error from the grid"),
-        "tail_bound": ((), "∫ H ds beyond S, at most, at the fitted rate"),
-        "entropy_rate": ((), "asymptotic decay rate of H"),
-        "entropy_rate_error": ((), "error of the rate: step, grid and subspace"),
-        "entropy_rate_line": ((), "slope of −ln H over the second half of the run"),
-        "entropy_rate_line_error": ((), "standard error of the slope, with its bend"),
-        "run_rate": (("symmetry",), "slowest decay rate of the density by symmetry"),
-        "run_rate_error": (("symmetry",), "error of the slowest rate by symmetry"),
-        "quadratic_share": ((), "H over half the square of ‖p/p_S − 1‖ at S"),
-        "s_end": ((), "end S of the run"),
-        "ds": ((), "longer of the two steps of the run"),
-        "half_width": (("axis",), "half width of the box"),
-        "cells": (("coordinate",), "cells of the grid"),
-        "entropy_start": ((), "H at s = 0"),
-        "entropy_end": ((), "H at S"),
-        "boundary_mass": ((), "largest mass at the edge of the box"),
+        "inverse_decay_rate": ("inverse decay rate I = ∫₀^S H ds", ()),
+        "inverse_decay_rate_error": ("error of I: step, grid and quadrature", ()),
+        "inverse_decay_rate_step_error": ("part of the error from the step", ()),
+        "inverse_decay_rate_grid_error": ("part of the error from the grid", ()),
+        "tail_bound": ("∫ H ds beyond S, at most, at the fitted rate", ()),
+        "entropy_rate": ("asymptotic decay rate of H", ()),
+        "entropy_rate_error": ("error of the rate: step, grid and subspace", ()),
+        "entropy_rate_line": ("slope of −ln H over the second half of the run", ()),
+        "entropy_rate_line_error": ("standard error of the slope, with its bend", ()),
+        "run_rate": ("slowest decay rate of the density by symmetry", ("symmetry",)),
+        "run_rate_error": ("error of the slowest rate by symmetry", ("symmetry",)),
+        "quadratic_share": ("H over half the square of ‖p/p_S − 1‖ at S", ()),
+        "s_end": ("end S of the run", ()),
+        "ds": ("longer of the two steps of the run", ()),
+        "half_width": ("half width of the box", ("axis",)),
+        "cells": ("cells of the grid", ("coordinate",)),
+        "entropy_start": ("H at s = 0", ()),
+        "entropy_end": ("H at S", ()),
+        "boundary_mass": ("largest mass at the edge of the box", ()),
+        "slowest_class": TEXT,
     },
     "evolution": {
-        "spectral_inverse_decay_rate": ((), "I = ∫₀^S H ds by spectral_solve"),
-        "spectral_inverse_decay_rate_error": ((), "error of it"),
+        "spectral_inverse_decay_rate": ("I = ∫₀^S H ds by spectral_solve", ()),
+        "spectral_inverse_decay_rate_error": ("error of it", ()),
     },
     "branches": {
-        "branch_rate": (("sector", "mode"), "−Re λ of the leading eigenvalues"),
-        "branch_frequency": (("sector", "mode"), "Im λ of the leading eigenvalues"),
-        "branch_error": (("sector", "mode"), "error of the eigenvalue"),
-        "essential_rate": ((), "where the essential spectrum begins"),
+        "branch_rate": ("−Re λ of the leading eigenvalues", ("sector", "mode")),
+        "branch_frequency": ("Im λ of the leading eigenvalues", ("sector", "mode")),
+        "branch_error": ("error of the eigenvalue", ("sector", "mode")),
+        "essential_rate": ("where the essential spectrum begins", ()),
     },
     "gap": {
-        "gap": ((), "spectral gap"),
-        "gap_error": ((), "error of the gap"),
-        "gap_frequency": ((), "|Im λ| of the slowest eigenvalue"),
+        "gap": ("spectral gap", ()),
+        "gap_error": ("error of the gap", ()),
+        "gap_frequency": ("|Im λ| of the slowest eigenvalue", ()),
+        "gap_sector": TEXT,
     },
     "variance": {
-        "asymptotic_variance": (("function",), "−2⟨f, L⁻¹f⟩ over Var f"),
-        "asymptotic_variance_error": (("function",), "error of the variance"),
+        "asymptotic_variance": ("−2⟨f, L⁻¹f⟩ over Var f", ("function",)),
+        "asymptotic_variance_error": ("error of the variance", ("function",)),
     },
 }
-_TEXTS = {"relaxation": ("slowest_class",), "gap": ("gap_sector",)}
 
 
 def rates_dataset(
@@ -94,101 +101,49 @@ def rates_dataset(
     about : mapping
         What repeats the study.
     """
-    import xarray as xr
-
-    by_place = {
-        (case.arguments["part"], case.arguments["noise"]): case for case in cases
-    }
-    parts = [part for part in PARTS if any(key[0] == part for key in by_place)]
+    asked = {case.arguments["part"] for case in cases}
+    parts = [part for part in PARTS if part in asked]
+    placed = by_noise_and_part(cases, noises, parts)
     coordinates = _coordinates(potential, noises, parts, about["functions"])
     sizes = {name: len(values) for name, (_, values, _) in coordinates.items()}
-    variables: dict[str, Any] = _statuses(by_place, parts, noises)
-    for part in parts:
-        own = [by_place.get((part, float(noise))) for noise in noises]
-        for name, (dims, meaning) in _NUMBERS[part].items():
-            values = _stacked(own, name, tuple(sizes[dim] for dim in dims))
-            variables[name] = (("noise", *dims), values, labels(meaning))
-        for name in _TEXTS.get(part, ()):
-            texts = [str(case.values[name]) if case and case.values else ""
-                     for case in own]  # fmt: skip
-            variables[name] = ("noise", np.array(texts, dtype=object))
+    variables = outcomes(placed, ("noise", "part"))
+    for column, part in enumerate(parts):
+        own = placed[:, column]
+        variables |= variables_of(own, ("noise",), _COLUMNS[part], sizes)
     variables |= {
-        name: ("noise", values, labels(meaning))
+        name: (("noise",), values, labels(meaning))
         for name, (values, meaning) in theory_curves(potential, noises).items()
     }
     if "variance" in parts:
         variables |= _shapes(noises, variables["asymptotic_variance"][1])
-    dataset = xr.Dataset(
-        variables,
-        {name: one for name, one in coordinates.items()
-         if name == "noise" or any(name in _dims(v) for v in variables.values())},
-        {
-            "title": "Rate of convergence against noise",
-            "equation": "(9) of Klar, Marheineke and Wegener (2009), fixed belt",
-            "potential": to_json(potential_to_dict(potential)),
-            "formula": potential.formula,
-            "p0": to_json(about["p0"].to_dict()),
-            "quick": int(about["quick"]),
-            "settings": json.dumps(about["settings"]),
-            **made_with(),
-        },
-    )  # fmt: skip
-    return marked(dataset, "rate")
-
-
-def _dims(variable: Any) -> tuple[str, ...]:
-    dims = variable[0]
-    return (dims,) if isinstance(dims, str) else tuple(dims)
+    used = {one for dims, *_ in variables.values() for one in dims}
+    kept = {name: one for name, one in coordinates.items() if name in used}
+    described = {
+        "equation": "(9) of Klar, Marheineke and Wegener (2009), fixed belt",
+        "p0": to_json(about["p0"].to_dict()),
+        "quick": int(about["quick"]),
+        "settings": to_json(about["settings"]),
+    }
+    title = "Rate of convergence against noise"
+    return study_dataset("rate", title, potential, variables, kept, described)
 
 
 def _coordinates(
     potential: Potential, noises: Array, parts: list[str], functions: list[str]
 ) -> dict[str, Any]:
-    symmetries = CLASSES if potential.isotropic else ("all",)
-    sectors = [str(sector) for sector in sectors_shown(potential)]
+    words = {
+        "part": parts,
+        "function": functions,
+        "sector": map(str, sectors_shown(potential)),
+        "symmetry": CLASSES if potential.isotropic else ("all",),
+        "axis": ("xi1", "xi2"),
+        "coordinate": ("xi1", "xi2", "alpha"),
+    }
     return {
         "noise": ("noise", noises, labels("noise A")),
-        "part": ("part", _names(parts), {}),
-        "function": ("function", _names(functions), {}),
-        "sector": ("sector", _names(sectors), {}),
         "mode": ("mode", np.arange(2), {}),
-        "symmetry": ("symmetry", _names(symmetries), {}),
-        "axis": ("axis", _names(("xi1", "xi2")), {}),
-        "coordinate": ("coordinate", _names(("xi1", "xi2", "alpha")), {}),
+        **{name: (name, texts(one), {}) for name, one in words.items()},
     }
-
-
-def _names(names: Sequence[str]) -> NDArray[Any]:
-    return np.array(list(names), dtype=object)
-
-
-def _statuses(
-    cases: Mapping[tuple[str, float], Case], parts: list[str], noises: Array
-) -> dict[str, Any]:
-    """Status, message and seconds by noise and part."""
-
-    def table(read: Callable[[Case], Any], missing: Any, kind: Any) -> Any:
-        found = [
-            [cases.get((part, float(noise))) for part in parts] for noise in noises
-        ]
-        rows = [[missing if one is None else read(one) for one in row] for row in found]
-        return np.array(rows, dtype=kind)
-
-    dims = ("noise", "part")
-    seconds = table(lambda case: case.seconds, np.nan, float)
-    return {
-        "status": (dims, table(lambda case: case.status, "not asked for", object)),
-        "message": (dims, table(lambda case: case.message, "", object)),
-        "seconds": (dims, seconds, {"long_name": "wall time", "units": "s"}),
-    }
-
-
-def _stacked(cases: Sequence[Case | None], name: str, shape: tuple[int, ...]) -> Array:
-    values = np.full((len(cases), *shape), np.nan)
-    for row, case in enumerate(cases):
-        if case is not None and name in case.values:
-            values[row] = case.values[name]
-    return values
 
 
 def theory_curves(potential: Potential, noises: Array) -> dict[str, tuple[Array, str]]:
@@ -233,6 +188,6 @@ def _shapes(noises: Array, variances: Array) -> dict[str, Any]:
         terms = np.stack([1 / noises[usable], noises[usable]], axis=1) / root[:, None]
         coefficients[column] = nnls(terms, np.ones(root.size))[0]
     return {
-        "shape_small": ("function", coefficients[:, 0], labels("c₁c₂ of (12)")),
-        "shape_large": ("function", coefficients[:, 1], labels("c₁c₃ of (12)")),
+        "shape_small": (("function",), coefficients[:, 0], labels("c₁c₂ of (12)")),
+        "shape_large": (("function",), coefficients[:, 1], labels("c₁c₃ of (12)")),
     }

@@ -10,21 +10,21 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve._support.checks import check_flag, check_positive
-from fpsolve.errors import RunInterrupted
+from fpsolve._support.checks import check_flag, check_kind, check_positive
 from fpsolve.evolution.call import recorded
 from fpsolve.model.laydown import LayDownModel
 from fpsolve.model.potentials.potential import Potential
 from fpsolve.model.potentials.quadratic import QuadraticPotential
 from fpsolve.paths.laws import GaussianLaw
 from fpsolve.spectral.eigen.spectrum import check_tolerance
-from fpsolve.studies.arguments import check_functions, names_of, series_of
+from fpsolve.studies.arguments import chosen_parts, noises_of
 from fpsolve.studies.constants.poincare import poincare_constant, require_confining
-from fpsolve.studies.observables import Observable, default_observables
-from fpsolve.studies.rates.bounds import checked_noise
+from fpsolve.studies.observables import Observable, functions_of
+from fpsolve.studies.rates.bounds import NO_DECAY
 from fpsolve.studies.rates.cases import PARTS, rate_case
 from fpsolve.studies.rates.dataset import rates_dataset
-from fpsolve.studies.sweeps.sweep import SweepProgress, sweep
+from fpsolve.studies.sweeps.study import swept
+from fpsolve.studies.sweeps.sweep import Case, SweepProgress
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -143,14 +143,12 @@ def rate_versus_noise(
     quick = check_flag("quick", quick)
     if s_end is not None:
         s_end = check_positive("s_end", s_end)
-    if functions is not None:
-        functions = check_functions(functions)
-    parts = None if parts is None else names_of(parts)
-    functions = dict(default_observables(potential) if functions is None else functions)
-    p0 = _checked_start(DEFAULT_START if p0 is None else p0)
+    functions = functions_of(functions, potential)
+    p0 = DEFAULT_START if p0 is None else p0
+    check_kind("p0", p0, GaussianLaw, "every noise has its own grid")
     settings = QUICK if quick else Settings()
     gap = settings.gap if tolerance is None else check_tolerance(tolerance)
-    chosen = _checked_parts(potential, parts)
+    chosen = chosen_parts(parts, possible_parts(potential), "potential")
     options = _options(p0, functions, settings, gap, s_end)
     cases = [
         {"part": part, "potential": potential, "noise": float(noise), **options[part]}
@@ -162,15 +160,14 @@ def rate_versus_noise(
         "p0": p0, "quick": quick, "settings": vars(settings) | {"gap": gap},
         "functions": list(functions),
     }  # fmt: skip
-    try:
-        found = sweep(
-            rate_case, cases, client=client, workers=workers, directory=directory,
-            progress=progress,
-        )  # fmt: skip
-    except RunInterrupted as interrupt:
-        partial = rates_dataset(potential, amplitudes, interrupt.solution, about)
-        raise RunInterrupted(partial) from None
-    return rates_dataset(potential, amplitudes, found, about)
+
+    def dataset(found: list[Case]) -> xr.Dataset:
+        return rates_dataset(potential, amplitudes, found, about)
+
+    return swept(
+        rate_case, cases, dataset,
+        client=client, workers=workers, directory=directory, progress=progress,
+    )  # fmt: skip
 
 
 def _options(
@@ -199,31 +196,10 @@ def _checked(potential: Potential, noises: Iterable[float]) -> Array:
     LayDownModel(potential, 1.0)
     require_confining(potential)
     poincare_constant(potential)
-    listed = [checked_noise("noises", noise) for noise in series_of(noises)]
-    if not listed:
-        raise ValueError("`noises` must hold at least one noise, got none.")
-    return np.unique(listed)
+    return np.unique(noises_of(noises, NO_DECAY))
 
 
-def _checked_start(p0: Any) -> GaussianLaw:
-    if not isinstance(p0, GaussianLaw):
-        raise TypeError(
-            f"`p0` must be a GaussianLaw, got {p0!r}; every noise has its own grid."
-        )
-    return p0
-
-
-def _checked_parts(potential: Potential, parts: Iterable[str] | None) -> list[str]:
-    possible = [
-        part
-        for part in PARTS
-        if part != "evolution" or isinstance(potential, QuadraticPotential)
-    ]
-    chosen = possible if parts is None else names_of(parts)
-    unknown = [part for part in chosen if part not in possible]
-    if unknown or not chosen:
-        raise ValueError(
-            f"`parts` must be among {', '.join(possible)} for this potential, got "
-            f"{', '.join(map(str, unknown)) or 'none'}."
-        )
-    return [part for part in PARTS if part in chosen]
+def possible_parts(potential: Potential) -> list[str]:
+    """The parts of a study; a density evolves in a basis for quadratic B only."""
+    quadratic = isinstance(potential, QuadraticPotential)
+    return [part for part in PARTS if part != "evolution" or quadratic]
