@@ -9,9 +9,18 @@ from numpy.typing import NDArray
 
 from fpsolve._support.checks import shown
 
-__all__ = ["check_answers", "check_finite_numbers", "check_floats", "check_numbers"]
+__all__ = [
+    "Array",
+    "Complex",
+    "check_answers",
+    "check_finite_numbers",
+    "check_floats",
+    "check_numbers",
+]
 
+# What most of the package is about, in the words of its signatures.
 Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
 
 
 def check_numbers(name: str, values: Any) -> Array:

@@ -11,7 +11,7 @@ import inspect
 import math
 import operator
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -31,6 +31,7 @@ __all__ = [
     "check_tolerance",
     "construct",
     "has_length",
+    "keep_checked",
     "shown",
     "told_apart",
 ]
@@ -212,6 +213,12 @@ def check_integer(
     if at_most is not None and number > at_most:
         raise ValueError(f"`{name}` must be at most {at_most}, got {number}.")
     return number
+
+
+def keep_checked(made: Any, check: Callable[[str, Any], Any], *names: str) -> None:
+    """Replace attributes of a frozen dataclass by what a check makes of them."""
+    for name in names:
+        object.__setattr__(made, name, check(name, getattr(made, name)))
 
 
 def construct(target: type[T], name: str, parameters: Mapping[str, Any]) -> T:

@@ -8,9 +8,9 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from fpsolve._support.arrays import check_numbers
+from fpsolve._support.arrays import Array, check_numbers
 from fpsolve._support.checks import (
     check_kind,
     check_noise,
@@ -22,10 +22,7 @@ from fpsolve.model.curves.belts import FixedBelt
 from fpsolve.model.curves.curve import Curve
 from fpsolve.model.curves.dictionaries import curve_from_dict, curve_to_dict
 from fpsolve.model.potentials.claims import check_gradient
-from fpsolve.model.potentials.dictionaries import (
-    potential_from_dict,
-    potential_to_dict,
-)
+from fpsolve.model.potentials.dictionaries import potential_from_dict, potential_to_dict
 from fpsolve.model.potentials.evidence import check_wells_met
 from fpsolve.model.potentials.potential import Potential
 
@@ -105,7 +102,7 @@ class LayDownModel:
 
     def drift(
         self, xi1: ArrayLike, xi2: ArrayLike, alpha: ArrayLike, s: float = 0.0
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    ) -> tuple[Array, Array, Array]:
         """(cos α - γ1', sin α - γ2', -∇B·τ⊥): the drift of (ξ, α) per unit of s.
 
         Parameters
@@ -127,7 +124,7 @@ class LayDownModel:
         curve1, curve2 = self.curve.velocity(s)
         return cosine - curve1, sine - curve2, slope1 * sine - slope2 * cosine
 
-    def equilibrium(self, xi1: ArrayLike, xi2: ArrayLike) -> NDArray[np.float64]:
+    def equilibrium(self, xi1: ArrayLike, xi2: ArrayLike) -> Array:
         """p_S(ξ) = exp(-B(ξ))/(2π Z), normalised on R² x [0, 2π).
 
         It does not depend on α or on the noise. Stationary only on a fixed belt; on a
@@ -158,7 +155,9 @@ class LayDownModel:
     @property
     def equation(self) -> str:
         """The Fokker-Planck equation as plain text with the actual parameters."""
-        terms = f"∂ₛp + {self._transport()} - ∂_α(∇B·τ⊥ p) = {self._diffusion()}"
+        velocity = self._velocity("τ(α)", "γ'(s)", " e₁")
+        diffusion = f"{self.diffusivity:g} ∂_αα p" if self.noise else "0"
+        terms = f"∂ₛp + {velocity}·∇p - ∂_α(∇B·τ⊥ p) = {diffusion}"
         unknowns = [f"B = {self.potential.formula}"]
         if not self.curve.autonomous:
             unknowns.append(f"γ(s) = {self.curve.formula}")
@@ -172,8 +171,7 @@ class LayDownModel:
         if curve.fixed:
             motion = "τ(α) ds"
         elif curve.autonomous:
-            sign = "-" if curve.speed < 0 else "+"
-            motion = f"(τ(α) {sign} {abs(curve.speed):g} e₁) ds"
+            motion = f"(τ(α) {_signed(curve.speed)} e₁) ds"
         noise = f" + {self.noise:g} dW" if self.noise else ""
         terms = [
             f"dξ = {motion}",
@@ -220,10 +218,12 @@ class LayDownModel:
     @property
     def latex(self) -> str:
         """The Fokker-Planck equation as LaTeX, without dollar signs and without B."""
+        velocity = self._velocity(r"\tau(\alpha)", r"\gamma'(s)", r"\,e_1")
+        second = r"\,\partial_{\alpha\alpha} p"
+        diffusion = f"{self.diffusivity:g}{second}" if self.noise else "0"
         return (
-            rf"\partial_s p + {self._transport_latex()}"
-            r" - \partial_\alpha(\nabla B\cdot\tau^\perp p)"
-            rf" = {self._diffusion_latex()}"
+            rf"\partial_s p + {velocity}\cdot\nabla_\xi p"
+            rf" - \partial_\alpha(\nabla B\cdot\tau^\perp p) = {diffusion}"
         )
 
     def _repr_latex_(self) -> str:
@@ -232,27 +232,13 @@ class LayDownModel:
             unknowns += rf",\quad \gamma(s) = {self.curve.latex}"
         return f"${self.latex}{unknowns}$"
 
-    def _transport(self) -> str:
+    def _velocity(self, tau: str, slope: str, belt: str) -> str:
+        """τ - γ' in the signs of plain text or of LaTeX."""
         if self.curve.fixed:
-            return "τ(α)·∇p"
+            return tau
         if not self.curve.autonomous:
-            return "(τ(α) - γ'(s))·∇p"
-        return f"(τ(α) {_signed(self.belt_speed)} e₁)·∇p"
-
-    def _transport_latex(self) -> str:
-        if self.curve.fixed:
-            return r"\tau(\alpha)\cdot\nabla_\xi p"
-        if not self.curve.autonomous:
-            return r"(\tau(\alpha) - \gamma'(s))\cdot\nabla_\xi p"
-        return rf"(\tau(\alpha) {_signed(self.belt_speed)}\,e_1)\cdot\nabla_\xi p"
-
-    def _diffusion(self) -> str:
-        return f"{self.diffusivity:g} ∂_αα p" if self.noise else "0"
-
-    def _diffusion_latex(self) -> str:
-        if not self.noise:
-            return "0"
-        return rf"{self.diffusivity:g}\,\partial_{{\alpha\alpha}} p"
+            return f"({tau} - {slope})"
+        return f"({tau} {_signed(self.belt_speed)}{belt})"
 
 
 def check_model(model: Any) -> None:

@@ -6,11 +6,10 @@ import math
 import warnings
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from fpsolve._support.arrays import check_numbers
-from fpsolve._support.checks import check_non_negative, check_positive
+from fpsolve._support.arrays import Array, check_numbers
+from fpsolve._support.checks import check_non_negative, check_positive, keep_checked
 from fpsolve.model.curves.belts import FixedBelt, MovingBelt
 from fpsolve.model.curves.curve import Curve, check_speed
 from fpsolve.model.laydown import LayDownModel
@@ -82,11 +81,9 @@ class Process:
     spinning_speed: float
 
     def __post_init__(self) -> None:
-        for name in ("sigma1", "sigma2", "spinning_speed"):
-            object.__setattr__(self, name, check_positive(name, getattr(self, name)))
-        object.__setattr__(self, "noise", check_non_negative("noise", self.noise))
-        speed_ratio = check_speed(self.speed_ratio, "speed_ratio")
-        object.__setattr__(self, "speed_ratio", speed_ratio)
+        keep_checked(self, check_positive, "sigma1", "sigma2", "spinning_speed")
+        keep_checked(self, check_non_negative, "noise")
+        keep_checked(self, check_speed, "speed_ratio")
         self._check_units()
         self._warn_outside_industrial_ranges()
 
@@ -110,27 +107,27 @@ class Process:
         """Seconds per unit of s: σ1 divided by the spinning speed."""
         return self.sigma1 / self.spinning_speed
 
-    def to_metres(self, x: ArrayLike) -> NDArray[np.float64]:
+    def to_metres(self, x: ArrayLike) -> Array:
         """Lengths ξ or s in metres: x σ1."""
         return _times(x, self.length)
 
-    def from_metres(self, x: ArrayLike) -> NDArray[np.float64]:
+    def from_metres(self, x: ArrayLike) -> Array:
         """Lengths in metres as dimensionless ξ or s: x/σ1."""
         return _times(x, 1 / self.length)
 
-    def to_seconds(self, s: ArrayLike) -> NDArray[np.float64]:
+    def to_seconds(self, s: ArrayLike) -> Array:
         """Time in seconds that it takes to lay down the arclength s."""
         return _times(s, self.time)
 
-    def rate_per_metre(self, rate: ArrayLike) -> NDArray[np.float64]:
+    def rate_per_metre(self, rate: ArrayLike) -> Array:
         """Rates per unit of s (a spectral gap, say) per metre of fibre."""
         return _times(rate, 1 / self.length)
 
-    def rate_per_second(self, rate: ArrayLike) -> NDArray[np.float64]:
+    def rate_per_second(self, rate: ArrayLike) -> Array:
         """Rates per unit of s per second of production."""
         return _times(rate, 1 / self.time)
 
-    def area_density(self, p: ArrayLike) -> NDArray[np.float64]:
+    def area_density(self, p: ArrayLike) -> Array:
         """Densities per unit of ξ plane per square metre: p/σ1².
 
         A density of (ξ, α) stays a density per radian in α.
@@ -167,5 +164,5 @@ class Process:
             )
 
 
-def _times(numbers: ArrayLike, factor: float) -> NDArray[np.float64]:
+def _times(numbers: ArrayLike, factor: float) -> Array:
     return check_numbers("x", numbers) * factor

@@ -14,7 +14,6 @@ from fpsolve.model.potentials.dictionaries import KINDS as POTENTIAL_KINDS
 
 __all__ = ["describe_model", "is_of_a_user", "read_model"]
 
-
 _KNOWN: dict[str, Collection[str]] = {
     "potential": POTENTIAL_KINDS,
     "curve": CURVE_KINDS,

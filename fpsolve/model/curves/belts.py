@@ -6,10 +6,10 @@ from dataclasses import dataclass, field
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from fpsolve._support.arrays import check_finite_numbers
-from fpsolve._support.checks import check_finite
+from fpsolve._support.arrays import Array, check_finite_numbers
+from fpsolve._support.checks import check_finite, keep_checked
 from fpsolve.model.curves.curve import Curve, check_speed
 
 __all__ = ["FixedBelt", "MovingBelt"]
@@ -29,13 +29,15 @@ class FixedBelt(Curve):
     speed: float = field(default=0.0, init=False, repr=False)
 
     kind: ClassVar[str] = "fixed_belt"
+    autonomous = fixed = True
+    formula = latex = "0"
 
-    def position(self, s: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def position(self, s: ArrayLike) -> tuple[Array, Array]:
         """(0, 0)."""
         shape = check_finite_numbers("s", s).shape
         return np.zeros(shape), np.zeros(shape)
 
-    def velocity(self, s: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def velocity(self, s: ArrayLike) -> tuple[Array, Array]:
         """(0, 0)."""
         shape = check_finite_numbers("s", s).shape
         return np.zeros(shape), np.zeros(shape)
@@ -44,26 +46,6 @@ class FixedBelt(Curve):
         """(0, 0)."""
         check_finite("s0", s0), check_finite("s1", s1)
         return 0.0, 0.0
-
-    @property
-    def autonomous(self) -> bool:
-        """True."""
-        return True
-
-    @property
-    def fixed(self) -> bool:
-        """True."""
-        return True
-
-    @property
-    def formula(self) -> str:
-        """γ(s) as plain text."""
-        return "0"
-
-    @property
-    def latex(self) -> str:
-        """γ(s) as LaTeX."""
-        return "0"
 
 
 @dataclass(frozen=True)
@@ -88,16 +70,17 @@ class MovingBelt(Curve):
     speed: float
 
     kind: ClassVar[str] = "moving_belt"
+    autonomous = True
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "speed", check_speed(self.speed))
+        keep_checked(self, check_speed, "speed")
 
-    def position(self, s: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def position(self, s: ArrayLike) -> tuple[Array, Array]:
         """(-v s, 0)."""
         s = check_finite_numbers("s", s)
         return np.asarray(-self.speed * s), np.zeros(s.shape)
 
-    def velocity(self, s: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def velocity(self, s: ArrayLike) -> tuple[Array, Array]:
         """(-v, 0)."""
         shape = check_finite_numbers("s", s).shape
         return np.full(shape, -self.speed), np.zeros(shape)
@@ -106,11 +89,6 @@ class MovingBelt(Curve):
         """(-v (s1 - s0), 0)."""
         s0, s1 = check_finite("s0", s0), check_finite("s1", s1)
         return -self.speed * (s1 - s0), 0.0
-
-    @property
-    def autonomous(self) -> bool:
-        """True."""
-        return True
 
     @property
     def fixed(self) -> bool:

@@ -6,9 +6,9 @@ from abc import ABC, abstractmethod
 from dataclasses import fields
 from typing import Any, ClassVar
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from fpsolve._support.arrays import Array
 from fpsolve._support.checks import check_finite
 
 __all__ = ["Curve", "check_speed"]
@@ -38,11 +38,11 @@ class Curve(ABC):
     speed: float
 
     @abstractmethod
-    def position(self, s: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def position(self, s: ArrayLike) -> tuple[Array, Array]:
         """(γ1(s), γ2(s)), each in the shape of s."""
 
     @abstractmethod
-    def velocity(self, s: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def velocity(self, s: ArrayLike) -> tuple[Array, Array]:
         """(γ1'(s), γ2'(s)), each in the shape of s."""
 
     @abstractmethod
@@ -88,7 +88,7 @@ class Curve(ABC):
         return f"$\\gamma(s) = {self.latex}$"
 
 
-def check_speed(speed: Any, name: str = "speed") -> float:
+def check_speed(name: str, speed: Any) -> float:
     """Return the belt speed as a float; ValueError unless -1 < v < 1."""
     number = check_finite(name, speed)
     if not abs(number) < 1:

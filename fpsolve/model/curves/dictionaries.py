@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from fpsolve._support.checks import construct
-from fpsolve._support.digests import SAMPLED, plain
 from fpsolve.model.curves.belts import FixedBelt, MovingBelt
 from fpsolve.model.curves.curve import Curve
 from fpsolve.model.curves.nozzles import (
@@ -16,6 +14,7 @@ from fpsolve.model.curves.nozzles import (
 )
 from fpsolve.model.curves.samples import digest_of_curve
 from fpsolve.model.curves.table import TabulatedCurve
+from fpsolve.model.dictionaries import described, rebuilt
 
 __all__ = ["KINDS", "curve_from_dict", "curve_to_dict"]
 
@@ -40,14 +39,7 @@ def curve_to_dict(curve: Curve) -> dict[str, Any]:
     velocities is added (see `model.curves.samples`), and `curve_from_dict` refuses
     it.
     """
-    if type(curve) in KINDS.values():
-        return curve.to_dict()
-    try:
-        description = plain(curve.to_dict())
-    # It is no dataclass.
-    except TypeError:
-        description = plain({"kind": curve.kind, "description": repr(curve)})
-    return {**description, SAMPLED: digest_of_curve(curve)}
+    return described(curve, KINDS, digest_of_curve)
 
 
 def curve_from_dict(description: Mapping[str, Any]) -> Curve:
@@ -64,14 +56,4 @@ def curve_from_dict(description: Mapping[str, Any]) -> Curve:
         If the kind is unknown, or a parameter does not exist or is missing; or if it
         was a class of a user's own, even one that inherits the kind of one of fpsolve.
     """
-    parameters = dict(description)
-    kind = parameters.pop("kind", None)
-    if SAMPLED in parameters:
-        raise ValueError(
-            f"`curve` must not be of your own code to be read back, got {kind!r}; "
-            "build it again in Python."
-        )
-    if not (isinstance(kind, str) and kind in KINDS):
-        known = ", ".join(repr(name) for name in KINDS)
-        raise ValueError(f"`kind` of a curve must be one of {known}, got {kind!r}.")
-    return construct(KINDS[kind], kind, parameters)
+    return rebuilt("curve", description, KINDS)

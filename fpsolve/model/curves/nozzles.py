@@ -8,10 +8,10 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from fpsolve._support.arrays import check_finite_numbers
-from fpsolve._support.checks import check_finite, check_non_negative
+from fpsolve._support.arrays import Array, check_finite_numbers
+from fpsolve._support.checks import check_finite, check_non_negative, keep_checked
 from fpsolve.model.curves.curve import Curve, check_speed
 
 __all__ = ["EllipticNozzle", "OscillatingNozzle", "RotatingNozzle"]
@@ -22,6 +22,8 @@ class _Nozzle(Curve):
 
     angular_speed: float
     phase: float
+    # Names of the fields that are radii.
+    _lengths: ClassVar[tuple[str, ...]]
 
     @property
     @abstractmethod
@@ -29,18 +31,17 @@ class _Nozzle(Curve):
         """Radii (r1, r2) along and across the belt."""
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "speed", check_speed(self.speed))
-        angular_speed = check_finite("angular_speed", self.angular_speed)
-        object.__setattr__(self, "angular_speed", angular_speed)
-        object.__setattr__(self, "phase", check_finite("phase", self.phase))
+        keep_checked(self, check_speed, "speed")
+        keep_checked(self, check_finite, "angular_speed", "phase")
+        keep_checked(self, check_non_negative, *self._lengths)
 
-    def position(self, s: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def position(self, s: ArrayLike) -> tuple[Array, Array]:
         """-v s e1 + (r1 cos(ωs + φ), r2 sin(ωs + φ))."""
         (radius1, radius2), angle = self.radii, self._angle(s)
         along = radius1 * np.cos(angle) - self.speed * check_finite_numbers("s", s)
         return np.asarray(along), np.asarray(radius2 * np.sin(angle))
 
-    def velocity(self, s: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def velocity(self, s: ArrayLike) -> tuple[Array, Array]:
         """-v e1 + ω (-r1 sin(ωs + φ), r2 cos(ωs + φ))."""
         (radius1, radius2), angle = self.radii, self._angle(s)
         along = -self.speed - self.angular_speed * radius1 * np.sin(angle)
@@ -69,20 +70,20 @@ class _Nozzle(Curve):
     @property
     def formula(self) -> str:
         """γ(s) as plain text."""
-        radius1, radius2 = self.radii
-        angle = f"({self._angle_text()})"
-        along, across = _times(radius1, " cos", angle), _times(radius2, " sin", angle)
-        belt = f"{-self.speed:g} s e₁ + " if self.speed else ""
-        return f"{belt}({along}, {across})"
+        return self._written(" s e₁", " cos", " sin", " ")
 
     @property
     def latex(self) -> str:
         """γ(s) as LaTeX."""
-        radius1, radius2 = self.radii
-        angle = f"({self._angle_text()})"
-        along, across = _times(radius1, r"\cos", angle), _times(radius2, r"\sin", angle)
-        belt = rf"{-self.speed:g}\,s\,e_1 + " if self.speed else ""
-        return rf"{belt}({along},\ {across})"
+        return self._written(r"\,s\,e_1", r"\cos", r"\sin", r"\ ")
+
+    def _written(self, along_belt: str, cosine: str, sine: str, space: str) -> str:
+        belt = f"{-self.speed:g}{along_belt} + " if self.speed else ""
+        terms = [
+            f"{radius:g}{function}({self._angle_text()})" if radius else "0"
+            for radius, function in zip(self.radii, (cosine, sine), strict=True)
+        ]
+        return f"{belt}({terms[0]},{space}{terms[1]})"
 
     def _angle_text(self) -> str:
         if self.phase == 0:
@@ -90,12 +91,8 @@ class _Nozzle(Curve):
         sign = "-" if self.phase < 0 else "+"
         return f"{self.angular_speed:g} s {sign} {abs(self.phase):g}"
 
-    def _angle(self, s: ArrayLike) -> NDArray[np.float64]:
+    def _angle(self, s: ArrayLike) -> Array:
         return self.angular_speed * check_finite_numbers("s", s) + self.phase
-
-
-def _times(radius: float, function: str, angle: str) -> str:
-    return f"{radius:g}{function}{angle}" if radius else "0"
 
 
 @dataclass(frozen=True)
@@ -130,11 +127,7 @@ class EllipticNozzle(_Nozzle):
     phase: float = 0.0
 
     kind: ClassVar[str] = "elliptic_nozzle"
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        object.__setattr__(self, "radius1", check_non_negative("radius1", self.radius1))
-        object.__setattr__(self, "radius2", check_non_negative("radius2", self.radius2))
+    _lengths: ClassVar[tuple[str, ...]] = ("radius1", "radius2")
 
     @property
     def radii(self) -> tuple[float, float]:
@@ -148,19 +141,15 @@ class RotatingNozzle(_Nozzle):
 
     Parameters
     ----------
-    speed : float
-        Belt speed v, -1 < v < 1.
+    speed, angular_speed, phase : float
+        v, ω and φ as for `EllipticNozzle`.
     radius : float
         Radius r, non-negative.
-    angular_speed : float
-        ω in radians per unit of arclength.
-    phase : float
-        φ in radians.
 
     Raises
     ------
     ValueError
-        If v is not between -1 and 1, the radius negative, or a number not finite.
+        As for `EllipticNozzle`.
 
     References
     ----------
@@ -173,10 +162,7 @@ class RotatingNozzle(_Nozzle):
     phase: float = 0.0
 
     kind: ClassVar[str] = "rotating_nozzle"
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        object.__setattr__(self, "radius", check_non_negative("radius", self.radius))
+    _lengths: ClassVar[tuple[str, ...]] = ("radius",)
 
     @property
     def radii(self) -> tuple[float, float]:
@@ -190,19 +176,15 @@ class OscillatingNozzle(_Nozzle):
 
     Parameters
     ----------
-    speed : float
-        Belt speed v, -1 < v < 1.
+    speed, angular_speed, phase : float
+        v, ω and φ as for `EllipticNozzle`.
     amplitude : float
         Amplitude a, non-negative.
-    angular_speed : float
-        ω in radians per unit of arclength.
-    phase : float
-        φ in radians.
 
     Raises
     ------
     ValueError
-        If v is not between -1 and 1, the amplitude negative, or a number not finite.
+        As for `EllipticNozzle`.
 
     References
     ----------
@@ -215,11 +197,7 @@ class OscillatingNozzle(_Nozzle):
     phase: float = 0.0
 
     kind: ClassVar[str] = "oscillating_nozzle"
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        amplitude = check_non_negative("amplitude", self.amplitude)
-        object.__setattr__(self, "amplitude", amplitude)
+    _lengths: ClassVar[tuple[str, ...]] = ("amplitude",)
 
     @property
     def radii(self) -> tuple[float, float]:

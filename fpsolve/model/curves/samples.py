@@ -6,14 +6,13 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fpsolve._support.arrays import Array
 from fpsolve._support.digests import digest_of_answers
 from fpsolve.model.curves.curve import Curve
 
 __all__ = ["digest_of_curve"]
 
-Array = NDArray[np.float64]
 Function = Callable[..., Any]
 
 # Arclengths of every scale that a run may have, decade by decade.

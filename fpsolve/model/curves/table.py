@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from fpsolve._support.arrays import check_numbers
+from fpsolve._support.arrays import Array, check_numbers
 from fpsolve._support.checks import told_apart
 from fpsolve.model.curves.curve import Curve, check_speed
 
@@ -58,14 +58,14 @@ class TabulatedCurve(Curve):
             # Tuples make equality, hashing and JSON work as for the other curves.
             object.__setattr__(self, name, tuple(column.tolist()))
         travelled = self.gamma1[0] - self.gamma1[-1]
-        speed = check_speed(travelled / (self.s[-1] - self.s[0]))
+        speed = check_speed("speed", travelled / (self.s[-1] - self.s[0]))
         object.__setattr__(self, "speed", speed)
 
-    def position(self, s: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def position(self, s: ArrayLike) -> tuple[Array, Array]:
         """(γ1(s), γ2(s)) of the spline."""
         return self._components(self._spline, s)
 
-    def velocity(self, s: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def velocity(self, s: ArrayLike) -> tuple[Array, Array]:
         """(γ1'(s), γ2'(s)) of the spline; 0 for every s if all points are the same."""
         if self.fixed:
             return np.zeros(np.shape(s)), np.zeros(np.shape(s))
@@ -135,13 +135,11 @@ class TabulatedCurve(Curve):
     def _spline_derivative(self) -> Any:
         return self._spline.derivative()
 
-    def _components(
-        self, spline: Any, s: ArrayLike
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def _components(self, spline: Any, s: ArrayLike) -> tuple[Array, Array]:
         values = spline(self._checked_arclength(s))
         return np.array(values[..., 0]), np.array(values[..., 1])
 
-    def _checked_arclength(self, s: ArrayLike) -> NDArray[np.float64]:
+    def _checked_arclength(self, s: ArrayLike) -> Array:
         arclength = check_numbers("s", s)
         inside = self._covered(arclength)
         if not np.all(inside):
@@ -153,13 +151,13 @@ class TabulatedCurve(Curve):
             )
         return arclength
 
-    def _covered(self, s: NDArray[np.float64]) -> NDArray[np.bool_]:
+    def _covered(self, s: Array) -> NDArray[np.bool_]:
         first, last = self.s[0], self.s[-1]
         slack = _ROUNDING * (last - first)
         return (s >= first - slack) & (s <= last + slack)
 
 
-def _checked_columns(columns: dict[str, ArrayLike]) -> dict[str, NDArray[np.float64]]:
+def _checked_columns(columns: dict[str, ArrayLike]) -> dict[str, Array]:
     arrays = {name: check_numbers(name, c) for name, c in columns.items()}
     n = arrays["s"].size
     for name, array in arrays.items():

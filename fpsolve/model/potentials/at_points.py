@@ -6,13 +6,12 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from fpsolve._support.arrays import Array
 from fpsolve.model.potentials.potential import Potential
 
 __all__ = ["gradient_at", "value_at"]
-
-Array = NDArray[np.float64]
 
 # Further out than this share of the farthest point it is no kink but an overflow.
 _FAR = 0.5

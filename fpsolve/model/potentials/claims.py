@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["check_gradient", "check_isotropy"]
+from fpsolve._support.arrays import Array
 
-Array = NDArray[np.float64]
+__all__ = ["ANGLES", "RADII", "central_difference", "check_gradient", "check_isotropy"]
 
-# None of them round, so that a kink on an axis or at an integer is not hit.
-_RADII = np.array([0.0531, 0.217, 0.549, 0.893, 1.271, 1.937, 3.113])
-_ANGLES = np.array([0.37, 1.13, 2.29, 3.01, 3.97, 4.61, 5.83])
+# Radii where the fibre of a dimensionless model lies, and angles in all quadrants;
+# none of them round, so that a kink on an axis or at an integer is not hit.
+RADII = np.array([0.0531, 0.217, 0.549, 0.893, 1.271, 1.937, 3.113])
+ANGLES = np.array([0.37, 1.13, 2.29, 3.01, 3.97, 4.61, 5.83])
 # Rounding of B at the two points is far below, another value far above.
 _SAME = 1e-9
 # Steps of central differences relative to the radius: B may have features of any size.
@@ -25,9 +26,9 @@ _RELATIVE = 1e-2
 
 def check_isotropy(value: Callable[..., Any], size: float) -> None:
     """Raise ValueError if B(r cos θ, r sin θ) is not B(r, 0), for r about `size`."""
-    r = size * _RADII[:, None]
+    r = size * RADII[:, None]
     with np.errstate(all="ignore"):
-        turned = np.asarray(value(r * np.cos(_ANGLES), r * np.sin(_ANGLES)))
+        turned = np.asarray(value(r * np.cos(ANGLES), r * np.sin(ANGLES)))
         along = np.asarray(value(r, 0.0 * r))
         away = np.abs(turned - along)
         wrong = away > _SAME * (1.0 + np.abs(turned) + np.abs(along))
@@ -37,7 +38,7 @@ def check_isotropy(value: Callable[..., Any], size: float) -> None:
     along = np.broadcast_to(along, turned.shape)
     raise ValueError(
         f"`isotropic` must be false unless B depends on the radius alone, got "
-        f"B = {turned[i, j]:g} at r = {r[i, 0]:g}, angle {_ANGLES[j]:g}, and "
+        f"B = {turned[i, j]:g} at r = {r[i, 0]:g}, angle {ANGLES[j]:g}, and "
         f"{along[i, j]:g} at angle 0."
     )
 
@@ -47,7 +48,7 @@ def check_gradient(value: Callable[..., Any], gradient: Callable[..., Any]) -> N
 
     Places where either is not finite are passed over: B may be defined in a box.
     """
-    xi = np.stack([_RADII * np.cos(_ANGLES), _RADII * np.sin(_ANGLES)])
+    xi = np.stack([RADII * np.cos(ANGLES), RADII * np.sin(ANGLES)])
     try:
         with np.errstate(all="ignore"):
             slopes, wrong = _compared(value, gradient, xi)
@@ -57,11 +58,11 @@ def check_gradient(value: Callable[..., Any], gradient: Callable[..., Any]) -> N
     if not wrong.any():
         return
     axis, at = np.argwhere(wrong)[0]
-    difference, _ = _central_differences(value, xi, _STEPS[0] * _RADII)
+    difference, _ = central_difference(value, xi, int(axis), _STEPS[0] * RADII)
     raise ValueError(
         "`gradient` of the potential must be that of its `value`, got component "
         f"{axis} = {slopes[axis, at]:g} where central differences give "
-        f"{difference[axis, at]:g}, at xi = ({xi[0, at]:g}, {xi[1, at]:g})."
+        f"{difference[at]:g}, at xi = ({xi[0, at]:g}, {xi[1, at]:g})."
     )
 
 
@@ -76,22 +77,35 @@ def _compared(
     slopes = slopes.astype(np.float64)
     wrong = np.isfinite(slopes)
     for step in _STEPS:
-        difference, rounding = _central_differences(value, xi, step * _RADII)
+        differences = [central_difference(value, xi, axis, step * RADII)
+                       for axis in (0, 1)]  # fmt: skip
+        difference, height = map(np.stack, zip(*differences, strict=True))
+        rounding = 1e-14 * (height + 1.0) / (step * RADII)
         size = np.maximum(np.abs(slopes), np.abs(difference))
         wrong &= np.abs(slopes - difference) > _RELATIVE * size + rounding
     return slopes, wrong
 
 
-def _central_differences(
-    value: Callable[..., Any], xi: Array, step: Array
+def central_difference(
+    value: Callable[..., Any],
+    points: Array | Sequence[Array],
+    axis: int,
+    step: Array | float,
 ) -> tuple[Array, Array]:
-    """∂B by differences, and what of it may be rounding; shapes (2, n)."""
-    found, rounding = [], []
-    for axis in (0, 1):
-        ahead, behind = xi.copy(), xi.copy()
-        ahead[axis] += step
-        behind[axis] -= step
-        high, low = (np.broadcast_to(value(*at), step.shape) for at in (ahead, behind))
-        found.append((high - low) / (ahead[axis] - behind[axis]))
-        rounding.append(1e-14 * (np.abs(high) + np.abs(low) + 1.0) / step)
-    return np.stack(found), np.stack(rounding)
+    """∂B along an axis, and |B| ahead plus |B| behind, of which it is the difference.
+
+    Parameters
+    ----------
+    value : callable
+    points : sequence of ndarray, shape (n,)
+        Coordinates, one after the other.
+    axis : int
+    step : float or ndarray, shape (n,)
+        As it is after rounding, not as it is asked for.
+    """
+    ahead, behind = list(points), list(points)
+    ahead[axis] = points[axis] + step
+    behind[axis] = points[axis] - step
+    shape = points[0].shape
+    high, low = (np.broadcast_to(value(*at), shape) for at in (ahead, behind))
+    return (high - low) / (ahead[axis] - behind[axis]), np.abs(high) + np.abs(low)

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from fpsolve._support.checks import construct
-from fpsolve._support.digests import SAMPLED, plain
+from fpsolve.model.dictionaries import described, rebuilt
 from fpsolve.model.potentials.free import FreePotential
 from fpsolve.model.potentials.linear import LinearPotential
 from fpsolve.model.potentials.potential import Potential
@@ -36,14 +35,7 @@ def potential_to_dict(potential: Potential) -> dict[str, Any]:
     functions, whatever it says, a digest of values and gradients is added (see
     `fpsolve.model.potentials.samples`), and `potential_from_dict` refuses it.
     """
-    if type(potential) in KINDS.values():
-        return potential.to_dict()
-    try:
-        description = plain(potential.to_dict())
-    # It is no dataclass.
-    except TypeError:
-        description = plain({"kind": potential.kind, "description": repr(potential)})
-    return {**description, SAMPLED: digest_of_potential(potential)}
+    return described(potential, KINDS, digest_of_potential)
 
 
 def potential_from_dict(description: Mapping[str, Any]) -> Potential:
@@ -61,19 +53,10 @@ def potential_from_dict(description: Mapping[str, Any]) -> Potential:
         if a parameter does not exist or is missing; or if it was a class of a user's
         own, even one that inherits the kind of one of fpsolve.
     """
-    parameters = dict(description)
-    kind = parameters.pop("kind", None)
-    if kind == CallablePotential.kind:
+    description = dict(description)
+    if description.get("kind") == CallablePotential.kind:
         raise ValueError(
             f"`potential` must not be made of functions to be read back, got "
-            f"{parameters.get('description', 'a callable')}; build it again in Python."
+            f"{description.get('description', 'a callable')}; build it again in Python."
         )
-    if SAMPLED in parameters:
-        raise ValueError(
-            f"`potential` must not be of your own code to be read back, got {kind!r}; "
-            "build it again in Python."
-        )
-    if not (isinstance(kind, str) and kind in KINDS):
-        known = ", ".join(repr(name) for name in KINDS)
-        raise ValueError(f"`kind` of a potential must be one of {known}, got {kind!r}.")
-    return construct(KINDS[kind], kind, parameters)
+    return rebuilt("potential", description, KINDS)

@@ -5,14 +5,13 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from fpsolve._support.arrays import Array
 from fpsolve.model.potentials.partition import Normalisation, normalisation_of
 from fpsolve.model.potentials.potential import Potential
 from fpsolve.model.potentials.quadrature import rules_for
 from fpsolve.model.potentials.wells import check_places, unseen
 
 __all__ = ["check_wells_met"]
-
-Array = NDArray[np.float64]
 
 # So many of the deepest places are compared with what the quadrature saw.
 _MOST = 64
@@ -22,10 +21,7 @@ _WEIGHT = 1e-6
 
 
 def check_wells_met(
-    potential: Potential,
-    xi1: ArrayLike,
-    xi2: ArrayLike,
-    value: Array | None = None,
+    potential: Potential, xi1: ArrayLike, xi2: ArrayLike, value: Array | None = None
 ) -> None:
     """Raise ValueError if B has a well at one of the points that Z does not count.
 

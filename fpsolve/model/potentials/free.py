@@ -8,9 +8,9 @@ from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from fpsolve._support.arrays import check_numbers
+from fpsolve._support.arrays import Array, check_numbers
 from fpsolve.model.potentials.potential import RadialPotential
 
 __all__ = ["FreePotential"]
@@ -26,12 +26,13 @@ class FreePotential(RadialPotential):
     """
 
     kind: ClassVar[str] = "free"
+    formula = latex = "0"
 
-    def radial_value(self, r: ArrayLike) -> NDArray[np.float64]:
+    def radial_value(self, r: ArrayLike) -> Array:
         """0."""
         return np.zeros(check_numbers("r", r).shape)
 
-    def radial_derivative(self, r: ArrayLike) -> NDArray[np.float64]:
+    def radial_derivative(self, r: ArrayLike) -> Array:
         """0."""
         return np.zeros(check_numbers("r", r).shape)
 
@@ -39,13 +40,3 @@ class FreePotential(RadialPotential):
     def partition_function(self) -> float:
         """Infinite: exp(-B) = 1 has no integral over the plane."""
         return math.inf
-
-    @property
-    def formula(self) -> str:
-        """B as plain text."""
-        return "0"
-
-    @property
-    def latex(self) -> str:
-        """B as LaTeX."""
-        return "0"

@@ -8,11 +8,11 @@ from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from fpsolve._support.arrays import check_numbers
-from fpsolve.model.potentials.lengths import check_length
-from fpsolve.model.potentials.potential import RadialPotential
+from fpsolve._support.arrays import Array, check_numbers
+from fpsolve._support.checks import keep_checked
+from fpsolve.model.potentials.potential import RadialPotential, check_length
 
 __all__ = ["LinearPotential"]
 
@@ -45,13 +45,13 @@ class LinearPotential(RadialPotential):
     kind: ClassVar[str] = "linear"
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "slope", check_length("slope", self.slope))
+        keep_checked(self, check_length, "slope")
 
-    def radial_value(self, r: ArrayLike) -> NDArray[np.float64]:
+    def radial_value(self, r: ArrayLike) -> Array:
         """K r."""
         return np.asarray(np.multiply(self.slope, check_numbers("r", r)))
 
-    def radial_derivative(self, r: ArrayLike) -> NDArray[np.float64]:
+    def radial_derivative(self, r: ArrayLike) -> Array:
         """K."""
         return np.full(check_numbers("r", r).shape, self.slope)
 

@@ -6,14 +6,12 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fpsolve._support.arrays import Array
 from fpsolve.model.potentials.potential import Potential
 from fpsolve.model.potentials.quadrature import node_places, node_values, rules_for
 
 __all__ = ["GibbsNodes", "gibbs_nodes"]
-
-Array = NDArray[np.float64]
 
 # What no mean can show is left out.
 _NEGLIGIBLE = 1e-20

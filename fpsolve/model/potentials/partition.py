@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from fpsolve._support.arrays import Array
 from fpsolve.model.potentials.quadrature import (
     ONE_NODE,
     Cells,
@@ -22,7 +23,6 @@ from fpsolve.model.potentials.wells import NO_PLACES, opened
 
 __all__ = ["Normalisation", "normalisation_of"]
 
-Array = NDArray[np.float64]
 Value = Callable[..., Array]
 Rules = tuple[Rule, Rule]
 
@@ -163,6 +163,7 @@ def _until(value: Value, cells: Cells, rules: Rules, aim: float, most: int) -> C
         order = np.argsort(cells.error)
         left = np.cumsum(cells.error[order])
         allowed = 0.5 * _aimed(cells, aim) * cells.integral.sum()
+        # All but those small ones whose errors together may stay.
         worst = order[left > allowed]
         room = max(64, most - n)
         worst = worst[-room:]

@@ -9,20 +9,22 @@ from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from fpsolve._support.arrays import check_numbers
+from fpsolve._support.arrays import Array, check_numbers
 from fpsolve._support.checks import check_positive
 from fpsolve.model.potentials.claims import check_isotropy
 from fpsolve.model.potentials.partition import Normalisation, normalisation_of
 from fpsolve.model.potentials.wells import check_places
 
-__all__ = ["Potential", "RadialPotential"]
+__all__ = ["Potential", "RadialPotential", "check_length"]
 
 # Relative error that the quadrature may have where B is rough, and a user's digits.
 _AGREES = 1e-6
 # e^{±700} is about the range of floats.
 _SMALLEST_LOGARITHM, _LARGEST_LOGARITHM = -700.0, 700.0
+# Squares of lengths are areas, and their products with others still numbers.
+_SHORTEST, _LONGEST = 1e-75, 1e75
 # What must agree with the closed forms of a class: of Z, spectra, samples and limits.
 _COMPUTED = ("value", "gradient", "radial_value", "radial_derivative")
 
@@ -72,13 +74,11 @@ class Potential(ABC):
             )
 
     @abstractmethod
-    def value(self, xi1: ArrayLike, xi2: ArrayLike) -> NDArray[np.float64]:
+    def value(self, xi1: ArrayLike, xi2: ArrayLike) -> Array:
         """B(ξ1, ξ2), float64, in the broadcast shape of the arguments."""
 
     @abstractmethod
-    def gradient(
-        self, xi1: ArrayLike, xi2: ArrayLike
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def gradient(self, xi1: ArrayLike, xi2: ArrayLike) -> tuple[Array, Array]:
         """(∂B/∂ξ1, ∂B/∂ξ2), two float64 arrays in the broadcast shape."""
 
     @property
@@ -107,12 +107,12 @@ class Potential(ABC):
         """
         return ()
 
-    def radial_value(self, r: ArrayLike) -> NDArray[np.float64]:
+    def radial_value(self, r: ArrayLike) -> Array:
         """B(r) of an isotropic potential, r >= 0; ValueError when it is not one."""
         self._require_isotropic()
         return self.value(r, 0.0)
 
-    def radial_derivative(self, r: ArrayLike) -> NDArray[np.float64]:
+    def radial_derivative(self, r: ArrayLike) -> Array:
         """B'(r) of an isotropic potential, r >= 0; ValueError when it is not one."""
         self._require_isotropic()
         return self.gradient(r, 0.0)[0]
@@ -195,13 +195,13 @@ class Potential(ABC):
         # The size of the pattern is known, however small or large.
         length = math.sqrt(area / (2 * math.pi))
 
-        def value(xi1: ArrayLike, xi2: ArrayLike) -> NDArray[np.float64]:
+        def value(xi1: ArrayLike, xi2: ArrayLike) -> Array:
             return self.value(np.multiply(length, xi1), np.multiply(length, xi2))
 
         places = self._places() / length
         return normalisation_of(value, self.isotropic, places).scaled(length)
 
-    def _places(self) -> NDArray[np.float64]:
+    def _places(self) -> Array:
         return check_places("well_places", self.well_places)
 
     @property
@@ -250,21 +250,19 @@ class RadialPotential(Potential):
         return True
 
     @abstractmethod
-    def radial_value(self, r: ArrayLike) -> NDArray[np.float64]:
+    def radial_value(self, r: ArrayLike) -> Array:
         """B(r), r >= 0."""
 
     @abstractmethod
-    def radial_derivative(self, r: ArrayLike) -> NDArray[np.float64]:
+    def radial_derivative(self, r: ArrayLike) -> Array:
         """B'(r), r >= 0; at 0 the limit from the right."""
 
-    def value(self, xi1: ArrayLike, xi2: ArrayLike) -> NDArray[np.float64]:
+    def value(self, xi1: ArrayLike, xi2: ArrayLike) -> Array:
         """B(‖ξ‖), float64, in the broadcast shape of the arguments."""
         xi1, xi2 = check_numbers("xi1", xi1), check_numbers("xi2", xi2)
         return self.radial_value(np.hypot(xi1, xi2))
 
-    def gradient(
-        self, xi1: ArrayLike, xi2: ArrayLike
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def gradient(self, xi1: ArrayLike, xi2: ArrayLike) -> tuple[Array, Array]:
         """B'(r) ξ/r, and 0 at the origin; two arrays in the broadcast shape."""
         xi1, xi2 = check_numbers("xi1", xi1), check_numbers("xi2", xi2)
         r = np.hypot(xi1, xi2)
@@ -272,3 +270,14 @@ class RadialPotential(Potential):
         safe_r = np.where(r > 0, r, 1.0)
         ratio = np.where(r > 0, self.radial_derivative(safe_r) / safe_r, 0.0)
         return np.asarray(ratio * xi1), np.asarray(ratio * xi2)
+
+
+def check_length(name: str, value: Any) -> float:
+    """Return a length (or its inverse) as a float; ValueError unless of some size."""
+    length = check_positive(name, value)
+    if not _SHORTEST <= length <= _LONGEST:
+        raise ValueError(
+            f"`{name}` must lie between {_SHORTEST:g} and {_LONGEST:g}, got "
+            f"{length:g}; lengths are in units of the throwing range."
+        )
+    return length

@@ -8,12 +8,11 @@ from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from fpsolve._support.arrays import check_numbers
-from fpsolve._support.checks import check_real
-from fpsolve.model.potentials.lengths import check_length
-from fpsolve.model.potentials.potential import RadialPotential
+from fpsolve._support.arrays import Array, check_numbers
+from fpsolve._support.checks import check_real, keep_checked
+from fpsolve.model.potentials.potential import RadialPotential, check_length
 
 __all__ = ["PowerPotential"]
 
@@ -56,14 +55,14 @@ class PowerPotential(RadialPotential):
                 "the gradient is singular at the origin."
             )
         object.__setattr__(self, "exponent", exponent)
-        object.__setattr__(self, "scale", check_length("scale", self.scale))
+        keep_checked(self, check_length, "scale")
 
-    def radial_value(self, r: ArrayLike) -> NDArray[np.float64]:
+    def radial_value(self, r: ArrayLike) -> Array:
         """(r/c)ⁿ / n."""
         r = check_numbers("r", r)
         return np.asarray(np.divide(r, self.scale) ** self.exponent / self.exponent)
 
-    def radial_derivative(self, r: ArrayLike) -> NDArray[np.float64]:
+    def radial_derivative(self, r: ArrayLike) -> Array:
         """(r/c)ⁿ⁻¹ / c."""
         scaled = np.divide(check_numbers("r", r), self.scale)
         return np.asarray(scaled ** (self.exponent - 1) / self.scale)

@@ -10,14 +10,12 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+
+from fpsolve._support.arrays import Array
+from fpsolve.model.potentials.claims import ANGLES, RADII, central_difference
 
 __all__ = ["check_plane_functions", "check_radial_functions"]
 
-# Radii where the fibre of a dimensionless model lies, and angles in all quadrants;
-# none of them round, so that a kink on an axis or at an integer is not hit.
-_RADII = np.array([0.0531, 0.217, 0.549, 0.893, 1.271, 1.937, 3.113])
-_ANGLES = np.array([0.37, 1.13, 2.29, 3.01, 3.97, 4.61, 5.83])
 # Optimal step of a central difference in double precision; its error is then about
 # 1e-10 of the size of B, far below the tolerances.
 _STEP = float(np.finfo(np.float64).eps ** (1 / 3))
@@ -29,30 +27,26 @@ _Function = Callable[..., Any]
 
 def check_radial_functions(value: _Function, derivative: _Function) -> None:
     """Raise unless `derivative` is B' of `value` = B at the probe radii."""
-    values = _probe("value", value, (_RADII,))
-    slopes = _probe("derivative", derivative, (_RADII,))
-    _compare("derivative", slopes, value, (_RADII,), 0, np.abs(values))
+    values = _probe("value", value, (RADII,))
+    slopes = _probe("derivative", derivative, (RADII,))
+    _compare("derivative", slopes, value, (RADII,), 0, np.abs(values))
 
 
 def check_plane_functions(value: _Function, gradient: _Function) -> None:
     """Raise unless `gradient` is ∇B of `value` = B at the probe points."""
-    points = _RADII * np.cos(_ANGLES), _RADII * np.sin(_ANGLES)
+    points = RADII * np.cos(ANGLES), RADII * np.sin(ANGLES)
     values = _probe("value", value, points)
     for axis, slopes in enumerate(_probe_pair(gradient, points)):
         name = f"gradient[{axis}]"
         _compare(name, slopes, value, points, axis, np.abs(values))
 
 
-def _probe(
-    name: str, function: _Function, points: tuple[NDArray[np.float64], ...]
-) -> NDArray[np.float64]:
+def _probe(name: str, function: _Function, points: tuple[Array, ...]) -> Array:
     _require_callable(name, function)
     return _checked_values(name, _called(name, function, points), points)
 
 
-def _probe_pair(
-    gradient: _Function, points: tuple[NDArray[np.float64], ...]
-) -> list[NDArray[np.float64]]:
+def _probe_pair(gradient: _Function, points: tuple[Array, ...]) -> list[Array]:
     _require_callable("gradient", gradient)
     slopes = _called("gradient", gradient, points)
     if not isinstance(slopes, tuple | list | np.ndarray) or len(slopes) != 2:
@@ -71,9 +65,7 @@ def _require_callable(name: str, function: Any) -> None:
         raise TypeError(f"`{name}` must be callable, got {function!r}.")
 
 
-def _called(
-    name: str, function: _Function, points: tuple[NDArray[np.float64], ...]
-) -> Any:
+def _called(name: str, function: _Function, points: tuple[Array, ...]) -> Any:
     try:
         return function(*points)
     except (TypeError, ValueError) as error:
@@ -83,9 +75,7 @@ def _called(
         ) from error
 
 
-def _checked_values(
-    name: str, values: Any, points: tuple[NDArray[np.float64], ...]
-) -> NDArray[np.float64]:
+def _checked_values(name: str, values: Any, points: tuple[Array, ...]) -> Array:
     array = np.asarray(values)
     if array.dtype.kind not in "fiub":
         raise TypeError(f"`{name}` must return real numbers, got {array.dtype}.")
@@ -103,28 +93,16 @@ def _checked_values(
     return array
 
 
-def _central_difference(
-    value: _Function, points: tuple[NDArray[np.float64], ...], axis: int
-) -> NDArray[np.float64]:
-    ahead, behind = list(points), list(points)
-    ahead[axis] = points[axis] + _STEP
-    behind[axis] = points[axis] - _STEP
-    # The steps as they are after rounding, not as they were asked for.
-    width = ahead[axis] - behind[axis]
-    difference = np.asarray(value(*ahead)) - np.asarray(value(*behind))
-    return np.broadcast_to(difference / width, points[0].shape)
-
-
 def _compare(
     name: str,
-    slopes: NDArray[np.float64],
+    slopes: Array,
     value: _Function,
-    points: tuple[NDArray[np.float64], ...],
+    points: tuple[Array, ...],
     axis: int,
-    size: NDArray[np.float64],
+    size: Array,
 ) -> None:
     """Raise where the slopes are not the differences of `value` along `axis`."""
-    differences = _central_difference(value, points, axis)
+    differences, _ = central_difference(value, points, axis, _STEP)
     allowed = _RELATIVE_TOLERANCE * np.maximum(np.abs(slopes), np.abs(differences))
     allowed += _ABSOLUTE_TOLERANCE * (1 + size)
     deviation = np.abs(slopes - differences)

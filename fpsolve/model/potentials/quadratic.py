@@ -8,11 +8,11 @@ from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from fpsolve._support.arrays import check_numbers
-from fpsolve.model.potentials.lengths import check_length
-from fpsolve.model.potentials.potential import Potential
+from fpsolve._support.arrays import Array, check_numbers
+from fpsolve._support.checks import keep_checked
+from fpsolve.model.potentials.potential import Potential, check_length
 
 __all__ = ["QuadraticPotential"]
 
@@ -45,28 +45,23 @@ class QuadraticPotential(Potential):
     kind: ClassVar[str] = "quadratic"
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "sigma1", check_length("sigma1", self.sigma1))
-        object.__setattr__(self, "sigma2", check_length("sigma2", self.sigma2))
+        keep_checked(self, check_length, "sigma1", "sigma2")
 
     @property
     def isotropic(self) -> bool:
         """Whether σ1 = σ2."""
         return self.sigma1 == self.sigma2
 
-    def value(self, xi1: ArrayLike, xi2: ArrayLike) -> NDArray[np.float64]:
+    def value(self, xi1: ArrayLike, xi2: ArrayLike) -> Array:
         """B(ξ1, ξ2), float64, in the broadcast shape of the arguments."""
         scaled1 = np.divide(check_numbers("xi1", xi1), self.sigma1)
         scaled2 = np.divide(check_numbers("xi2", xi2), self.sigma2)
         return np.asarray(0.5 * (scaled1**2 + scaled2**2))
 
-    def gradient(
-        self, xi1: ArrayLike, xi2: ArrayLike
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def gradient(self, xi1: ArrayLike, xi2: ArrayLike) -> tuple[Array, Array]:
         """(ξ1/σ1², ξ2/σ2²), two float64 arrays in the broadcast shape."""
         xi1, xi2 = check_numbers("xi1", xi1), check_numbers("xi2", xi2)
-        slope1, slope2 = np.broadcast_arrays(
-            np.divide(xi1, self.sigma1**2), np.divide(xi2, self.sigma2**2)
-        )
+        slope1, slope2 = np.broadcast_arrays(xi1 / self.sigma1**2, xi2 / self.sigma2**2)
         return np.array(slope1), np.array(slope2)
 
     @cached_property
@@ -77,22 +72,19 @@ class QuadraticPotential(Potential):
     @property
     def formula(self) -> str:
         """B as plain text."""
-        terms = (_term("ξ₁²", self.sigma1), _term("ξ₂²", self.sigma2))
-        return f"({terms[0]} + {terms[1]})/2"
+        return f"({_over('ξ₁²', self.sigma1)} + {_over('ξ₂²', self.sigma2)})/2"
 
     @property
     def latex(self) -> str:
         """B as LaTeX."""
-        terms = (
-            _latex_term(r"\xi_1^2", self.sigma1),
-            _latex_term(r"\xi_2^2", self.sigma2),
-        )
-        return rf"\frac12\left({terms[0]} + {terms[1]}\right)"
+        first = _latex_over(r"\xi_1^2", self.sigma1)
+        second = _latex_over(r"\xi_2^2", self.sigma2)
+        return rf"\frac12\left({first} + {second}\right)"
 
 
-def _term(square: str, sigma: float) -> str:
+def _over(square: str, sigma: float) -> str:
     return square if sigma == 1 else f"{square}/{sigma:g}²"
 
 
-def _latex_term(square: str, sigma: float) -> str:
+def _latex_over(square: str, sigma: float) -> str:
     return square if sigma == 1 else rf"\frac{{{square}}}{{{sigma:g}^2}}"

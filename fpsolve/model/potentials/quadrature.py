@@ -10,11 +10,13 @@ far above its integral hides something, or cannot tell, and is halved as well.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+from fpsolve._support.arrays import Array
 
 __all__ = [
     "Cells",
@@ -27,7 +29,6 @@ __all__ = [
     "weighed",
 ]
 
-Array = NDArray[np.float64]
 Value = Callable[..., Array]
 
 # B is cut off here, so that differences of it do not overflow.
@@ -90,6 +91,10 @@ def rules_for(isotropic: bool) -> tuple[Rule, Rule]:
     return KRONROD, ONE_NODE if isotropic else KRONROD
 
 
+# Attributes with an entry for every cell.
+_BY_CELL = ("edges", "integral", "error", "bound", "axis")
+
+
 @dataclass(frozen=True)
 class Cells:
     """Cells [r0, r1] × [a0, a1] and what is known of e^{reference - B} on them.
@@ -127,23 +132,15 @@ class Cells:
 
     def chosen(self, which: Any) -> Cells:
         """Some of the cells."""
-        kept: dict[str, Any] = {
-            field.name: getattr(self, field.name)[which]
-            for field in fields(self)
-            if field.name != "reference"
-        }
-        return replace(self, **kept)
+        return replace(self, **{name: getattr(self, name)[which] for name in _BY_CELL})
 
     def joined(self, other: Cells) -> Cells:
         """Both, relative to the lower reference."""
         reference = min(self.reference, other.reference)
         one, two = self.relative_to(reference), other.relative_to(reference)
         both: dict[str, Any] = {
-            field.name: np.concatenate(
-                [getattr(one, field.name), getattr(two, field.name)]
-            )
-            for field in fields(self)
-            if field.name != "reference"
+            name: np.concatenate([getattr(one, name), getattr(two, name)])
+            for name in _BY_CELL
         }
         return replace(one, **both)
 
@@ -193,6 +190,7 @@ def _summed(
 ) -> Cells:
     low1 = lowest_nearby(values, rules[0].nodes, 1)
     low2 = lowest_nearby(values, rules[1].nodes, 2)
+    # Between nodes B may be lower than at one by what it falls along both axes.
     allowed = reference - (low1 + low2 - values)
     n = len(edges)
     integral, error, bound = np.zeros(n), np.zeros(n), np.zeros(n)

@@ -6,13 +6,12 @@ import math
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fpsolve._support.arrays import Array
 from fpsolve.model.potentials.quadrature import lowest_nearby
 
 __all__ = ["lowest_in_ring"]
 
-Array = NDArray[np.float64]
 Value = Callable[..., Array]
 
 # Circles in a ring between r and 2r and as many as need be on either side; angles on

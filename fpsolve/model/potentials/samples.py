@@ -6,14 +6,13 @@ from functools import cache
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fpsolve._support.arrays import Array
 from fpsolve._support.digests import digest_of, digest_of_answers
 from fpsolve.model.potentials.potential import Potential
 
 __all__ = ["digest_of_potential", "digest_of_profile"]
 
-Array = NDArray[np.float64]
 Place = tuple[Array, Array]
 
 # Radii around those of a dimensionless model, in shells of a third of a decade.

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from fpsolve._support.arrays import check_finite_numbers, check_numbers
+from fpsolve._support.arrays import Array, check_finite_numbers, check_numbers
 from fpsolve.model.potentials.potential import Potential, RadialPotential
 from fpsolve.model.potentials.probes import (
     check_plane_functions,
@@ -22,8 +22,25 @@ __all__ = ["CallablePotential", "IsotropicPotential"]
 Places = tuple[tuple[float, float], ...]
 
 
+class _OfFunctions(Potential):
+    """A potential of functions, which no closed form or file can hold."""
+
+    kind: ClassVar[str] = "callable"
+
+    _well_places: Places
+
+    @property
+    def well_places(self) -> Places:
+        """Where wells are said to be."""
+        return self._well_places
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return a description, which `potential_from_dict` refuses."""
+        return {"kind": self.kind, "description": repr(self)}
+
+
 @dataclass(frozen=True, init=False, repr=False)
-class IsotropicPotential(RadialPotential):
+class IsotropicPotential(_OfFunctions, RadialPotential):
     """B(‖ξ‖) from two functions of r, the profile and its derivative.
 
     The gradient at the origin is defined as 0, and `derivative` is not called there.
@@ -51,7 +68,8 @@ class IsotropicPotential(RadialPotential):
     _derivative: Callable[[Any], ArrayLike]
     _well_places: Places
 
-    kind: ClassVar[str] = "callable"
+    formula = "B(‖ξ‖)"
+    latex = r"B(\|\xi\|)"
 
     def __init__(
         self,
@@ -67,32 +85,13 @@ class IsotropicPotential(RadialPotential):
         places = np.stack([radii, np.zeros_like(radii)], axis=1)
         object.__setattr__(self, "_well_places", _pairs("well_radii", places))
 
-    @property
-    def well_places(self) -> Places:
-        """(r, 0) for every one of `well_radii`."""
-        return self._well_places
-
-    def radial_value(self, r: ArrayLike) -> NDArray[np.float64]:
+    def radial_value(self, r: ArrayLike) -> Array:
         """B(r)."""
         return _as_float(self._value, check_numbers("r", r))
 
-    def radial_derivative(self, r: ArrayLike) -> NDArray[np.float64]:
+    def radial_derivative(self, r: ArrayLike) -> Array:
         """B'(r)."""
         return _as_float(self._derivative, check_numbers("r", r))
-
-    @property
-    def formula(self) -> str:
-        """B as plain text; the functions are not known in closed form."""
-        return "B(‖ξ‖)"
-
-    @property
-    def latex(self) -> str:
-        """B as LaTeX; the functions are not known in closed form."""
-        return r"B(\|\xi\|)"
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return a description, which `potential_from_dict` refuses."""
-        return {"kind": self.kind, "description": repr(self)}
 
     def __repr__(self) -> str:
         functions = f"value={_name(self._value)}, derivative={_name(self._derivative)}"
@@ -102,7 +101,7 @@ class IsotropicPotential(RadialPotential):
 
 
 @dataclass(frozen=True, init=False, repr=False)
-class CallablePotential(Potential):
+class CallablePotential(_OfFunctions):
     """B(ξ1, ξ2) from two functions on the plane, the value and its gradient.
 
     Z comes from quadrature. It can be described in a file, but not read back. Equal
@@ -131,7 +130,8 @@ class CallablePotential(Potential):
     _gradient: Callable[[Any, Any], tuple[ArrayLike, ArrayLike]]
     _well_places: Places
 
-    kind: ClassVar[str] = "callable"
+    formula = "B(ξ)"
+    latex = r"B(\xi)"
 
     def __init__(
         self,
@@ -145,37 +145,16 @@ class CallablePotential(Potential):
         object.__setattr__(self, "_gradient", gradient)
         object.__setattr__(self, "_well_places", _pairs("well_places", well_places))
 
-    @property
-    def well_places(self) -> Places:
-        """Where wells are said to be."""
-        return self._well_places
-
-    def value(self, xi1: ArrayLike, xi2: ArrayLike) -> NDArray[np.float64]:
+    def value(self, xi1: ArrayLike, xi2: ArrayLike) -> Array:
         """B(ξ1, ξ2), float64, in the broadcast shape of the arguments."""
         return _as_float(self._value, *_coordinates(xi1, xi2))
 
-    def gradient(
-        self, xi1: ArrayLike, xi2: ArrayLike
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def gradient(self, xi1: ArrayLike, xi2: ArrayLike) -> tuple[Array, Array]:
         """(∂B/∂ξ1, ∂B/∂ξ2), two float64 arrays in the broadcast shape."""
         xi1, xi2 = _coordinates(xi1, xi2)
         shape = np.broadcast_shapes(np.shape(xi1), np.shape(xi2))
         slope1, slope2 = self._gradient(*_arrays(xi1, xi2))
         return _filled(slope1, shape), _filled(slope2, shape)
-
-    @property
-    def formula(self) -> str:
-        """B as plain text; the functions are not known in closed form."""
-        return "B(ξ)"
-
-    @property
-    def latex(self) -> str:
-        """B as LaTeX; the functions are not known in closed form."""
-        return r"B(\xi)"
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return a description, which `potential_from_dict` refuses."""
-        return {"kind": self.kind, "description": repr(self)}
 
     def __repr__(self) -> str:
         functions = f"value={_name(self._value)}, gradient={_name(self._gradient)}"
@@ -184,7 +163,7 @@ class CallablePotential(Potential):
         return f"CallablePotential({functions})"
 
 
-def _coordinates(xi1: ArrayLike, xi2: ArrayLike) -> tuple[NDArray[np.float64], ...]:
+def _coordinates(xi1: ArrayLike, xi2: ArrayLike) -> tuple[Array, ...]:
     return check_numbers("xi1", xi1), check_numbers("xi2", xi2)
 
 
@@ -192,25 +171,23 @@ def _pairs(name: str, places: ArrayLike) -> Places:
     return tuple((float(xi1), float(xi2)) for xi1, xi2 in check_places(name, places))
 
 
-def _array(values: ArrayLike) -> NDArray[np.float64]:
+def _array(values: ArrayLike) -> Array:
     return np.asarray(values, dtype=np.float64)
 
 
-def _arrays(*coordinates: ArrayLike) -> tuple[NDArray[np.float64], ...]:
+def _arrays(*coordinates: ArrayLike) -> tuple[Array, ...]:
     # Of one shape, as when the functions were probed: one that stacks its arguments,
     # or returns ∇B as one array, works on the plane too.
     shape = np.broadcast_shapes(*map(np.shape, coordinates))
     return tuple(np.broadcast_to(_array(values), shape) for values in coordinates)
 
 
-def _filled(values: ArrayLike, shape: tuple[int, ...]) -> NDArray[np.float64]:
+def _filled(values: ArrayLike, shape: tuple[int, ...]) -> Array:
     # A user's function may return a constant where the formula has no variable.
     return np.array(np.broadcast_to(_array(values), shape))
 
 
-def _as_float(
-    function: Callable[..., ArrayLike], *coordinates: ArrayLike
-) -> NDArray[np.float64]:
+def _as_float(function: Callable[..., ArrayLike], *coordinates: ArrayLike) -> Array:
     shape = np.broadcast_shapes(*map(np.shape, coordinates))
     return _filled(function(*_arrays(*coordinates)), shape)
 

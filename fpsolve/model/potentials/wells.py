@@ -8,12 +8,11 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from fpsolve._support.arrays import check_numbers
+from fpsolve._support.arrays import Array, check_numbers
 from fpsolve.model.potentials.quadrature import Cells, Rule, node_values, refined
 
 __all__ = ["NO_PLACES", "check_places", "opened", "unseen"]
 
-Array = NDArray[np.float64]
 Value = Callable[..., Array]
 Rules = tuple[Rule, Rule]
 
