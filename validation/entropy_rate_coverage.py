@@ -18,7 +18,7 @@ from fpsolve.errors import FpsolveError
 from fpsolve.evolution.decay import DecayRate, fit_decay
 from fpsolve.paths import GaussianLaw
 from fpsolve.spectral import Sector
-from fpsolve.studies.rates.relaxation import plan_relaxation
+from fpsolve.studies.rates.relaxation_plan import plan_relaxation
 from fpsolve.studies.starts import density_and_law
 
 POTENTIALS = {

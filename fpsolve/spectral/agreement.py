@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from fpsolve._support.arrays import Array
 from fpsolve.errors import ToleranceError
 from fpsolve.model.laydown import LayDownModel
 from fpsolve.spectral.evolution.solution import SpectralSolution
@@ -14,27 +15,23 @@ from fpsolve.spectral.work import Work
 __all__ = ["excess", "failure"]
 
 
+def worst_errors(result: SpectralSolution) -> Array:
+    """Largest error at every s, relative where a number is above one."""
+    errors = [
+        errors / np.maximum(1.0, np.abs(result.series[name]))
+        for name, errors in result.errors.items()
+    ]
+    return np.asarray(np.max(errors, axis=0))
+
+
 def excess(result: SpectralSolution) -> float:
     """Largest error over what is allowed."""
-    return (
-        max(
-            float(np.max(errors / np.maximum(1.0, np.abs(result.series[name]))))
-            for name, errors in result.errors.items()
-        )
-        / result.tolerance
-    )
+    return float(worst_errors(result).max()) / result.tolerance
 
 
 def remedy(result: SpectralSolution) -> str:
     """What would help, by where the errors are."""
-    worst = np.max(
-        [
-            errors / np.maximum(1.0, np.abs(result.series[name]))
-            for name, errors in result.errors.items()
-        ],
-        axis=0,
-    )
-    met = worst <= result.tolerance
+    met = worst_errors(result) <= result.tolerance
     if met[-1]:
         first = result.s[int(np.flatnonzero(~met)[-1]) + 1]
         return f"it is reached from s = {first:g} on; ask for later `s`"

@@ -18,7 +18,7 @@ from fpsolve.spectral.bases.hermite import HermiteDiscretisation
 from fpsolve.spectral.bases.sectors import Truncation
 from fpsolve.spectral.bases.tensor import TensorDiscretisation
 from fpsolve.spectral.eigen.eigenvalues import ShiftedInverse
-from fpsolve.spectral.eigen.refinement import slowness
+from fpsolve.spectral.eigen.following import slowness
 from fpsolve.spectral.eigen.survey import Scale, survey
 
 ODD, EVEN, ONE = Sector(0, -1), Sector(0, 1), Sector(1)

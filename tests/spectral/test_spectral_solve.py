@@ -15,14 +15,14 @@ from fpsolve.spectral.evolution import quadrature
 from fpsolve.spectral.evolution.evolution import spectral_solve
 from fpsolve.spectral.evolution.expansion import Expansion
 from fpsolve.spectral.evolution.exponential import ForwardOperator
-from fpsolve.spectral.evolution.projection import DensityStart, GaussianStart
-from fpsolve.spectral.evolution.steady import (
+from fpsolve.spectral.evolution.null_vector import (
     Unknowns,
     forward_matrix,
-    spectral_steady_state,
     stationary,
     truncation_limits,
 )
+from fpsolve.spectral.evolution.projection import DensityStart, GaussianStart
+from fpsolve.spectral.evolution.steady import spectral_steady_state
 
 MODEL = fp.LayDownModel(fp.QuadraticPotential(), 1.0)
 BELT = fp.LayDownModel(fp.QuadraticPotential(), 1.5, fp.MovingBelt(0.2))

@@ -34,10 +34,10 @@ from fpsolve.studies.rates.modes import CLASSES, slowest_modes
 from fpsolve.studies.rates.poisson import (
     AsymptoticVariances,
     asymptotic_variances,
-    known_only,
 )
 from fpsolve.studies.rates.rate_versus_noise import rate_versus_noise
-from fpsolve.studies.rates.relaxation import _slowest, plan_relaxation
+from fpsolve.studies.rates.relaxation import _slowest
+from fpsolve.studies.rates.relaxation_plan import plan_relaxation
 
 QUADRATIC = QuadraticPotential()
 NOISES = (1.6, 2.0)
@@ -231,7 +231,7 @@ def test_of_variances_a_study_keeps_those_that_are_known():
         np.ones(3),
         Truncation(16, 8),
     )
-    np.testing.assert_array_equal(known_only(found).values, [2.0, np.nan, 0.0])
+    np.testing.assert_array_equal(found.known_only().values, [2.0, np.nan, 0.0])
 
 
 def test_a_case_that_fails_leaves_a_message_and_the_others(monkeypatch):

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from fpsolve._support.checks import check_kind
 from fpsolve.model.laydown import LayDownModel
 from fpsolve.model.potentials.potential import Potential
 from fpsolve.model.potentials.quadratic import QuadraticPotential
@@ -59,8 +60,7 @@ def discretisation_for(model: LayDownModel) -> Discretisation:
 
 def check(model: LayDownModel) -> None:
     """Raise unless the model has a stationary density that it forgets its start for."""
-    if not isinstance(model, LayDownModel):
-        raise TypeError(f"`model` must be a LayDownModel, got {model!r}.")
+    check_kind("model", model, LayDownModel)
     if not model.noise > 0:
         raise ValueError(
             "`noise` must be positive, got 0; without noise the orbits of different "

@@ -2,22 +2,25 @@
 
 from __future__ import annotations
 
-import itertools
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
-from scipy.sparse import csc_array
 from scipy.special import gammaln
 
+from fpsolve._support.arrays import Array, Complex
 from fpsolve.grids.phase_space import PhaseSpaceGrid
-from fpsolve.spectral.bases.sectors import Sector, Truncation, Vector
+from fpsolve.spectral.bases.isotropic import (
+    harmonics_of,
+    index_of,
+    isotropic_sectors,
+    on_grid,
+)
+from fpsolve.spectral.bases.sectors import Integers, Sector, Truncation, Vector
+from fpsolve.spectral.bases.states import Move, PolynomialDiscretisation, States
 
 __all__ = ["HermiteDiscretisation"]
-
-Integers = NDArray[np.int64]
 
 
 def sufficient_harmonics(sigma: float, noise: float, degree: int, digits: float) -> int:
@@ -33,7 +36,7 @@ def sufficient_harmonics(sigma: float, noise: float, degree: int, digits: float)
 
 
 @dataclass(frozen=True)
-class HermiteDiscretisation:
+class HermiteDiscretisation(PolynomialDiscretisation["_States"]):
     """L in the basis of complex Hermite (Itô) polynomials times exp(i k α).
 
     With w = (ξ1 + i ξ2)/(√2 σ), a = ∂_w and b = ∂_w̄, the multiplications are
@@ -48,9 +51,6 @@ class HermiteDiscretisation:
     (ξ2, α) → -(ξ2, α) exchanges (k, n_a, n_b) and (-k, n_b, n_a); the even and the
     odd combinations are √2 times the real and the imaginary part of the state.
 
-    L maps the basis (degree, harmonics) into (degree + 1, harmonics + 1), so residuals
-    are exact there.
-
     Parameters
     ----------
     sigma : float
@@ -64,9 +64,7 @@ class HermiteDiscretisation:
 
     def sectors(self) -> Iterator[Sector]:
         """M = 0 even, M = 0 odd, ±1, ±2, ..."""
-        yield Sector(0, 1)
-        yield Sector(0, -1)
-        yield from (Sector(M) for M in itertools.count(1))
+        return isotropic_sectors()
 
     def truncation(self, level: int) -> Truncation:
         """Degree 24, 34, 48, ... (a factor √2 each), harmonics as the noise needs."""
@@ -76,42 +74,18 @@ class HermiteDiscretisation:
             degree, sufficient_harmonics(self.sigma, self.noise, degree, digits)
         )
 
-    def enlarged(self, truncation: Truncation) -> Truncation:
-        """One more degree and one more harmonic: L f lies there exactly."""
-        return Truncation(truncation.degree + 1, truncation.harmonics + 1)
+    def states(self, sector: Sector, truncation: Truncation) -> _States:
+        """The basis functions of a sector, by harmonic and then by degree."""
+        return _States(sector, truncation)
 
-    def harmonics(self, sector: Sector, truncation: Truncation) -> Integers:
-        """The harmonic k of every basis function."""
-        return _States(sector, truncation).k
-
-    def matrix(self, sector: Sector, degree: int, harmonics: int) -> csc_array:
-        """The real matrix of L on a sector (columns: images)."""
-        states = _States(sector, Truncation(degree, harmonics))
-        k, n_a, n_b = states.k, states.n_a, states.n_b
+    def moves(self, states: _States) -> Iterator[Move]:
+        """How L changes (k, n_a, n_b), but for its diagonal -(A²/2) k²."""
+        k, n_a, n_b = states.k, states.m, states.n
         scale = np.sqrt(0.5) / self.sigma
-        moves = (
-            (1, -1, 0, scale * (1 + k) * np.sqrt(n_a)),
-            (1, 0, 1, scale * k * np.sqrt(n_b + 1)),
-            (-1, 0, -1, scale * (1 - k) * np.sqrt(n_b)),
-            (-1, 1, 0, -scale * k * np.sqrt(n_a + 1)),
-        )
-        parts = [states.coupling(*move) for move in moves]
-        parts.append(
-            (states.all, states.all, -0.5 * self.noise**2 * k.astype(float) ** 2)
-        )
-        rows, columns, entries = (
-            np.concatenate(column) for column in zip(*parts, strict=True)
-        )
-        return csc_array((entries, (rows, columns)), shape=(len(k), len(k)))
-
-    def embed(
-        self, vector: Vector, sector: Sector, small: Truncation, large: Truncation
-    ) -> Vector:
-        """Coefficients in the larger basis."""
-        inner, outer = _States(sector, small), _States(sector, large)
-        result = np.zeros(len(outer.k), dtype=vector.dtype)
-        result[outer.position(inner.k, inner.n_a, inner.n_b)] = vector
-        return result
+        yield 1, -1, 0, scale * (1 + k) * np.sqrt(n_a)
+        yield 1, 0, 1, scale * k * np.sqrt(n_b + 1)
+        yield -1, 0, -1, scale * (1 - k) * np.sqrt(n_b)
+        yield -1, 1, 0, -scale * k * np.sqrt(n_a + 1)
 
     def values(
         self,
@@ -119,81 +93,52 @@ class HermiteDiscretisation:
         sector: Sector,
         truncation: Truncation,
         grid: PhaseSpaceGrid,
-    ) -> NDArray[np.complex128]:
+    ) -> Complex:
         """f(ξ, α) on the grid from its coefficients."""
         states = _States(sector, truncation)
         xi1, xi2 = (axis.ravel() for axis in np.broadcast_arrays(*grid.plane()))
-        radial = states.table(vector)
+        square = (xi1**2 + xi2**2) / (2 * self.sigma**2)
         # Rows: harmonics; columns: points of the plane.
-        angular = states.M - states.k_range
-        modes = _radial_sums(
-            radial, np.abs(angular), (xi1**2 + xi2**2) / (2 * self.sigma**2)
-        )
-        plane = np.exp(1j * angular[:, None] * np.arctan2(xi2, xi1))
-        circle = np.exp(1j * states.k_range[:, None] * grid.alpha)
-        if sector.parity is None:
-            result = (modes * plane).T @ circle
-        else:
-            # √2 Re or √2 Im of every state; the harmonic 0 is real already.
-            modes = modes * np.where(states.k_range == 0, 0.5, np.sqrt(0.5))[:, None]
-            state = (modes * plane).T @ circle
-            mirrored = (modes * plane.conj()).T @ circle.conj()
-            even = sector.parity == 1
-            result = state + mirrored if even else (state - mirrored) / 1j
-        return np.asarray(result, dtype=np.complex128).reshape(grid.shape)
+        smallest = np.abs(index_of(sector) - states.k_range)
+        modes = _radial_sums(states.table(vector), smallest, square)
+        return on_grid(modes, sector, states.k_range, grid)
 
 
-class _States:
+class _States(States):
     """The basis functions of a sector, by harmonic and then by degree.
 
-    For M = 0 only k >= 0 (even) or k >= 1 (odd) are kept: the others follow by the
-    reflection.
+    The degrees m and n are n_a and n_b of `HermiteDiscretisation`.
     """
 
     def __init__(self, sector: Sector, truncation: Truncation) -> None:
-        if sector.M is None:
-            raise ValueError(f"`sector` must have an angular index M, got {sector!r}.")
-        degree, harmonics = truncation
-        first = {None: -harmonics, 1: 0, -1: 1}[sector.parity]
-        self.parity, self.degree, self.M = sector.parity, degree, sector.M
-        self.k_range = np.arange(first, harmonics + 1)
-        smallest = np.abs(self.M - self.k_range)
-        self.counts = np.maximum((degree - smallest) // 2 + 1, 0)
+        self.degree, self.last = truncation
+        self.folded = sector.parity is not None
+        self.k_range = harmonics_of(sector, self.last)
+        self.first = int(self.k_range[0])
+        smallest = np.abs(index_of(sector) - self.k_range)
+        self.counts = np.maximum((self.degree - smallest) // 2 + 1, 0)
         self.offsets = np.cumsum(self.counts) - self.counts
         self.k = np.repeat(self.k_range, self.counts)
-        self.all = np.arange(len(self.k))
-        self.m = self.all - np.repeat(self.offsets, self.counts)
-        angular = self.M - self.k
-        self.n_a = self.m + np.maximum(angular, 0)
-        self.n_b = self.m + np.maximum(-angular, 0)
+        angular = index_of(sector) - self.k
+        # Which function of its harmonic a state is.
+        self.number = self.all - np.repeat(self.offsets, self.counts)
+        self.m = self.number + np.maximum(angular, 0)
+        self.n = self.number + np.maximum(-angular, 0)
 
-    def position(self, k: Integers, n_a: Integers, n_b: Integers) -> Integers:
+    def position(self, k: Integers, m: Integers, n: Integers) -> Integers:
         """Where the states stand in a vector; they must be in the basis."""
-        offsets: Integers = self.offsets[k - self.k_range[0]]
-        return offsets + np.minimum(n_a, n_b)
-
-    def coupling(
-        self, dk: int, d_a: int, d_b: int, entries: NDArray[np.float64]
-    ) -> tuple[Integers, Integers, NDArray[np.float64]]:
-        """Rows, columns and entries of the move (k, n_a, n_b) + (dk, d_a, d_b)."""
-        k, n_a, n_b = self.k + dk, self.n_a + d_a, self.n_b + d_b
-        inside = (k >= self.k_range[0]) & (k <= self.k_range[-1])
-        inside &= (n_a >= 0) & (n_b >= 0) & (n_a + n_b <= self.degree)
-        if self.parity is not None:
-            # Harmonic 0 couples to 1 and, the same by reflection, to -1.
-            entries = np.where((self.k == 0) | (k == 0), np.sqrt(2.0), 1.0) * entries
-        rows = self.position(k[inside], n_a[inside], n_b[inside])
-        return rows, self.all[inside], entries[inside]
+        offsets: Integers = self.offsets[k - self.first]
+        return offsets + np.minimum(m, n)
 
     def table(self, vector: Vector) -> Vector:
-        """Coefficients as an array [harmonic, m], filled up with zeros."""
+        """Coefficients as an array [harmonic, number], filled up with zeros."""
         width = int(self.counts.max(initial=0))
         result = np.zeros((len(self.k_range), width), dtype=vector.dtype)
-        result[self.k - self.k_range[0], self.m] = vector
+        result[self.k - self.first, self.number] = vector
         return result
 
 
-def _radial_sums(table: Vector, index: Integers, x: NDArray[np.float64]) -> Vector:
+def _radial_sums(table: Vector, index: Integers, x: Array) -> Vector:
     """Σ_m table[k, m] ψ_m(x), ψ_m = (-1)^m √(m!/(m + l)!) x^{l/2} L_m^{(l)}(x).
 
     Three-term recurrence of multiplication by x, stable for growing m.

@@ -9,11 +9,12 @@ from typing import Any
 
 import numpy as np
 from numpy.polynomial.legendre import leggauss
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
+
+from fpsolve._support.arrays import Array
 
 __all__ = ["OrthonormalFamily", "RadialRule", "Shape", "radial_rule", "support"]
 
-Array = NDArray[np.float64]
 Profile = Callable[[Any], Array]
 
 # Where r^(2 degree) times the weight has fallen by exp(-DROP), a polynomial of that

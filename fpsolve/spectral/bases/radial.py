@@ -2,27 +2,36 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import csc_array
 
+from fpsolve._support.arrays import Array, Complex
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.model.potentials.potential import Potential
 from fpsolve.model.potentials.power import PowerPotential
 from fpsolve.spectral.bases.essential import asymptotic_slope, essential_threshold
+from fpsolve.spectral.bases.isotropic import (
+    harmonics_of,
+    index_of,
+    isotropic_sectors,
+    on_grid,
+)
 from fpsolve.spectral.bases.radial_basis import RadialBasis, radial_basis
-from fpsolve.spectral.bases.sectors import Sector, Truncation, Vector
+from fpsolve.spectral.bases.sectors import (
+    Discretisation,
+    Integers,
+    Sector,
+    Truncation,
+    Vector,
+)
+from fpsolve.spectral.bases.states import assembled
 
 __all__ = ["RadialDiscretisation"]
 
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
-Integers = NDArray[np.int64]
 # Of an angular index and a degree: basis functions and their derivatives.
 Table = Callable[[int, int], tuple[Array, Array]]
 
@@ -32,7 +41,7 @@ ROUNDING = 1e-14
 
 
 @dataclass(frozen=True)
-class RadialDiscretisation:
+class RadialDiscretisation(Discretisation):
     """L in the basis g_j(r) exp(i l φ + i k α), l = M - k, of one angular index M.
 
     L takes the harmonic k to
@@ -63,9 +72,7 @@ class RadialDiscretisation:
 
     def sectors(self) -> Iterator[Sector]:
         """M = 0 even, M = 0 odd, ±1, ±2, ..."""
-        yield Sector(0, 1)
-        yield Sector(0, -1)
-        yield from (Sector(M) for M in itertools.count(1))
+        return isotropic_sectors()
 
     def truncation(self, level: int) -> Truncation:
         """The basis of a level, 0, 1, 2, ..."""
@@ -107,8 +114,7 @@ class RadialDiscretisation:
             rows, columns = offsets[column + 1] + i, offsets[column] + j
             parts.append((rows, columns, block[i, j]))
             parts.append((columns, rows, -block[i, j]))
-        rows, columns, entries = map(np.concatenate, zip(*parts, strict=True))
-        return csc_array((entries, (rows, columns)), shape=(size, size))
+        return assembled(parts, size)
 
     def embed(
         self, vector: Vector, sector: Sector, small: Truncation, large: Truncation
@@ -140,20 +146,7 @@ class RadialDiscretisation:
         k, _ = self._layout(sector, truncation)
         evaluate = partial(self._basis(truncation.degree).evaluate, r)
         radial, _ = self._radial(vector, sector, truncation, evaluate)
-        angular = _index(sector) - k
-        plane = np.exp(1j * angular[:, None] * np.arctan2(xi2, xi1))
-        circle = np.exp(1j * k[:, None] * grid.alpha)
-        modes = radial[:, place]
-        if sector.parity is None:
-            result = (modes * plane).T @ circle
-        else:
-            # √2 Re or √2 Im of every state; the harmonic 0 is real already.
-            modes = modes * np.where(k == 0, 0.5, np.sqrt(0.5))[:, None]
-            state = (modes * plane).T @ circle
-            mirrored = (modes * plane.conj()).T @ circle.conj()
-            even = sector.parity == 1
-            result = state + mirrored if even else (state - mirrored) / 1j
-        return np.asarray(result, dtype=np.complex128).reshape(grid.shape)
+        return on_grid(radial[:, place], sector, k, grid)
 
     def residual(
         self,
@@ -173,7 +166,7 @@ class RadialDiscretisation:
         k, _ = self._layout(sector, truncation)
         # Times the root of the weight: its square underflows far out, g overflows.
         g, derivative = self._radial(vector, sector, truncation, basis.weighted)
-        tilt = ((_index(sector) - k)[:, None] / r + k[:, None] * slope) * g
+        tilt = ((index_of(sector) - k)[:, None] / r + k[:, None] * slope) * g
         up, down = 0.5 * (derivative + tilt), 0.5 * (derivative - tilt)
         scale = _folding(sector, k)[:, None]
         defect = np.zeros((len(k) + 2, len(r)), dtype=np.complex128)
@@ -191,21 +184,16 @@ class RadialDiscretisation:
     def _layout(
         self, sector: Sector, truncation: Truncation
     ) -> tuple[Integers, Integers]:
-        """Harmonics, and how many radial functions each has.
-
-        For M = 0 only k >= 0 (even) or k >= 1 (odd) are kept: the others follow by the
-        reflection.
-        """
+        """Harmonics, and how many radial functions each has."""
         degree, harmonics = truncation
-        first = {None: -harmonics, 1: 0, -1: 1}[sector.parity]
-        k = np.arange(first, harmonics + 1)
-        basis, M = self._basis(degree), _index(sector)
+        k = harmonics_of(sector, harmonics)
+        basis, M = self._basis(degree), index_of(sector)
         counts = [basis.count(n, M - n, degree) for n in map(int, k)]
         return k, np.array(counts, dtype=np.int64)
 
     def _raising(self, sector: Sector, k: int, degree: int) -> Array:
         """From the harmonic k to k + 1, in the basis of the sector."""
-        block = self._basis(degree).raising(k, _index(sector) - k, degree)
+        block = self._basis(degree).raising(k, index_of(sector) - k, degree)
         return block * float(_folding(sector, np.array([k]))[0])
 
     def _radial(
@@ -216,7 +204,7 @@ class RadialDiscretisation:
         parts = self._split(vector, counts)
         known: dict[int, tuple[Array, Array]] = {}
         rows = []
-        for angular, part in zip(_index(sector) - k, parts, strict=True):
+        for angular, part in zip(index_of(sector) - k, parts, strict=True):
             power = self._basis(truncation.degree).power(angular)
             if power not in known:
                 known[power] = table(angular, truncation.degree)
@@ -227,12 +215,6 @@ class RadialDiscretisation:
     @staticmethod
     def _split(vector: Vector, counts: Integers) -> list[Complex]:
         return np.split(vector.astype(np.complex128), np.cumsum(counts)[:-1])
-
-
-def _index(sector: Sector) -> int:
-    if sector.M is None:
-        raise ValueError(f"`sector` must have an angular index M, got {sector!r}.")
-    return sector.M
 
 
 def _folding(sector: Sector, k: Integers) -> Array:

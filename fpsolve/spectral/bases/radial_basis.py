@@ -7,8 +7,9 @@ from functools import lru_cache
 
 import numpy as np
 from numpy.polynomial import Chebyshev
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from fpsolve._support.arrays import Array
 from fpsolve.model.potentials.dictionaries import KINDS
 from fpsolve.model.potentials.potential import Potential
 from fpsolve.model.potentials.power import PowerPotential
@@ -23,8 +24,6 @@ from fpsolve.spectral.bases.orthogonal import (
 )
 
 __all__ = ["RadialBasis", "radial_basis", "shape_for", "smooth_in_square"]
-
-Array = NDArray[np.float64]
 
 SMOOTH = Shape(exponent=2.0)
 KINKED = Shape(exponent=0.5)

@@ -11,19 +11,22 @@ matrix, and the matrix of the adjoint L* is its transpose.
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
-from typing import Any, ClassVar, NamedTuple, Protocol
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from fpsolve._support.arrays import Complex
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 
 __all__ = ["Discretisation", "Sector", "Truncation"]
 
 # Coefficients, real or complex.
 Vector = NDArray[Any]
+Integers = NDArray[np.int64]
 
 
 @dataclass(frozen=True)
@@ -81,49 +84,64 @@ class Truncation(NamedTuple):
     harmonics: int
 
 
-class Discretisation(Protocol):
+class Discretisation(ABC):
     """A family of nested orthonormal bases of L²(μ), sorted into sectors."""
 
-    @property
-    def noise(self) -> float:
-        """The noise amplitude A."""
-        ...
+    noise: float
+    belt_speed: float = 0.0
 
+    @abstractmethod
     def sectors(self) -> Iterator[Sector]:
         """All sectors, those that hold the slowest modes first: by |M|.
 
         Endless for an isotropic potential; the caller stops.
         """
-        ...
 
+    @abstractmethod
     def truncation(self, level: int) -> Truncation:
         """The basis of a level, 0, 1, 2, ...: a sequence for refinement."""
-        ...
 
+    @abstractmethod
     def enlarged(self, truncation: Truncation) -> Truncation:
         """The basis in which L f lies (nearly, for a general B) for f of this one."""
-        ...
 
-    def harmonics(self, sector: Sector, truncation: Truncation) -> NDArray[np.int64]:
+    @abstractmethod
+    def harmonics(self, sector: Sector, truncation: Truncation) -> Integers:
         """The harmonic k of every basis function: dL/dA is -A k² on the diagonal."""
-        ...
 
+    @abstractmethod
     def matrix(self, sector: Sector, degree: int, harmonics: int) -> Any:
         """The real matrix of L (columns: images) as a CSC array."""
-        ...
 
+    @abstractmethod
     def embed(
         self, vector: Vector, sector: Sector, small: Truncation, large: Truncation
     ) -> Vector:
         """Coefficients in the larger basis."""
-        ...
 
+    @abstractmethod
     def values(
         self,
         vector: Vector,
         sector: Sector,
         truncation: Truncation,
         grid: PhaseSpaceGrid,
-    ) -> NDArray[np.complex128]:
+    ) -> Complex:
         """f(ξ, α) on the grid, shape `grid.shape`, from its coefficients."""
-        ...  # fmt: skip
+
+    def on_edge(self, vector: Vector, sector: Sector, truncation: Truncation) -> bool:
+        """Whether an eigenvector belongs to the truncation and not to L."""
+        return False
+
+    def residual(
+        self,
+        vector: Vector,
+        eigenvalue: complex,
+        sector: Sector,
+        truncation: Truncation,
+    ) -> float:
+        """‖L f - λ f‖/‖f‖ in L²(μ), computed in the enlarged basis."""
+        large = self.enlarged(truncation)
+        vector = self.embed(vector, sector, truncation, large)
+        defect = self.matrix(sector, *large) @ vector - eigenvalue * vector
+        return float(np.linalg.norm(defect) / np.linalg.norm(vector))

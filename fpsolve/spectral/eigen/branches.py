@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from fpsolve._support.arrays import Complex
 from fpsolve.model.laydown import LayDownModel
 from fpsolve.model.potentials.potential import Potential
 from fpsolve.spectral.bases.choice import discretisation_for
@@ -45,7 +46,7 @@ class Branch:
         """λ(A), followed from the nearest noise at which it is known."""
         nearest = min(self.known, key=lambda other: abs(other - noise))
         value = self.known[nearest]
-        values = self._near(noise, value + CLEAR * abs(value.real), 3)
+        values, _ = self._near(noise, value + CLEAR * abs(value.real), 3)
         self.known[noise] = complex(values[np.argmin(np.abs(values - value))])
         return self.known[noise]
 
@@ -56,12 +57,9 @@ class Branch:
     def slope(self, noise: float) -> float:
         """d(-Re λ)/dA = A Re ⟨l, k² r⟩/⟨l, r⟩, l and r left and right eigenvectors."""
         value = self.eigenvalue(noise)
-        basis = self._basis(noise)
-        matrix = basis.matrix(self.sector, *self.truncation)
-        inverse = ShiftedInverse(matrix, value + CLEAR * abs(value.real))
-        values, vectors = inverse.eigenpairs(3)
+        values, vectors = self._near(noise, value + CLEAR * abs(value.real), 3)
         right = vectors[:, np.argmin(np.abs(values - value))]
-        k = basis.harmonics(self.sector, self.truncation).astype(float)
+        k = self._basis(noise).harmonics(self.sector, self.truncation).astype(float)
         # Turning α by π takes L to L*.
         left = np.where(k % 2 == 0, 1.0, -1.0) * right
         return noise * float(((left @ (k**2 * right)) / (left @ right)).real)
@@ -69,10 +67,9 @@ class Branch:
     def _basis(self, noise: float) -> Discretisation:
         return discretisation_for(LayDownModel(self.potential, noise))
 
-    def _near(self, noise: float, shift: complex, n: int) -> np.ndarray:
+    def _near(self, noise: float, shift: complex, n: int) -> tuple[Complex, Complex]:
         matrix = self._basis(noise).matrix(self.sector, *self.truncation)
-        values, _ = ShiftedInverse(matrix, shift).eigenpairs(n)
-        return values
+        return ShiftedInverse(matrix, shift).eigenpairs(n)
 
 
 class PairBranch(Branch):
@@ -82,7 +79,7 @@ class PairBranch(Branch):
         """Mean m and discriminant δ = ((λ₁ - λ₂)/2)², both real."""
         nearest = min(self.known, key=lambda other: abs(other - noise))
         centre = self.known[nearest].real
-        first, second = self._near(noise, centre * (1 - CLEAR), 2)
+        (first, second), _ = self._near(noise, centre * (1 - CLEAR), 2)
         mean, delta = (first + second) / 2, ((first - second) / 2) ** 2
         self.known[noise] = complex(mean.real)
         return float(mean.real), float(delta.real)

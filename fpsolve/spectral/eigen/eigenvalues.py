@@ -6,21 +6,13 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import csc_array, eye_array
 from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, SuperLU, eigs, splu
 
+from fpsolve._support.arrays import Complex
 from fpsolve.spectral.work import Work
 
-__all__ = [
-    "ShiftedInverse",
-    "factor_bytes",
-    "factorised",
-    "neighbour",
-    "residual_norm",
-]
-
-Complex = NDArray[np.complex128]
+__all__ = ["ShiftedInverse", "factor_bytes", "factorised", "neighbour"]
 
 # Below this size LAPACK is as fast as Arnoldi, and Arnoldi needs room.
 DENSE = 40
@@ -112,6 +104,7 @@ class ShiftedInverse:
         return float(1 / np.abs(found[0]))
 
     def _start(self, start: Any) -> Any:
+        # Of all eigenvectors a random vector has a part, and this one always the same.
         if start is None:
             start = np.random.default_rng(0).standard_normal(self.size)
         real = self.shift.imag == 0
@@ -175,12 +168,6 @@ def neighbour(values: Complex, chosen: int | np.integer[Any]) -> complex | None:
     if not others.size:
         return None
     return complex(others[np.argmin(np.abs(others - values[chosen]))])
-
-
-def residual_norm(matrix: csc_array, value: complex, vector: Complex) -> float:
-    """‖L f - λ f‖/‖f‖ for the coefficients of f."""
-    defect = matrix @ vector - value * vector
-    return float(np.linalg.norm(defect) / np.linalg.norm(vector))
 
 
 def factor_bytes(size: int) -> int:

@@ -93,10 +93,6 @@ def spectral_gap(
     [KMW09]_, section 3.1.1; that there is a gap: [DKMS13]_.
     """
     found = spectrum(
-        model,
-        1,
-        tolerance=tolerance,
-        memory_limit=memory_limit,
-        work_limit=work_limit,
+        model, 1, tolerance=tolerance, memory_limit=memory_limit, work_limit=work_limit
     )
     return SpectralGap.of(found)

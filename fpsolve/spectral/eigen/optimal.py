@@ -7,9 +7,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import brentq
 
+from fpsolve._support.arrays import Array
 from fpsolve._support.blas import one_blas_thread
 from fpsolve.errors import ToleranceError
 from fpsolve.model.laydown import LayDownModel
@@ -144,14 +144,13 @@ def rough_gap(potential: Potential, noise: float) -> float:
     return modes[0].rate if modes else scale.limit
 
 
-def shrunk(
-    function: Callable[[float], float], points: NDArray[np.float64]
-) -> tuple[float, float]:
+def shrunk(function: Callable[[float], float], points: Array) -> tuple[float, float]:
     """Golden section for a maximum that need not be smooth."""
     lower, middle, upper = map(float, points)
     top = function(middle)
     golden = (3 - math.sqrt(5)) / 2
     while upper - lower > BRACKET * middle:
+        # The probe divides the longer part.
         right = upper - middle > middle - lower
         probe = middle + golden * ((upper if right else lower) - middle)
         value = function(probe)
@@ -198,6 +197,7 @@ class Meeting:
             return "crossing"
         if bool(left.eigenvalue.imag) != bool(right.eigenvalue.imag):
             return "double eigenvalue"
+        # Within the bracket one branch hardly moves; two of a sector may cross there.
         far = abs(left.eigenvalue - right.eigenvalue) > 0.05 * left
         return "crossing" if far else "smooth maximum"
 

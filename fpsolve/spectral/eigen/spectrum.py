@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar
 
 import numpy as np
-import psutil
 from numpy.typing import NDArray
 
+from fpsolve._support.arrays import Array, Complex
 from fpsolve._support.blas import one_blas_thread
 from fpsolve._support.checks import check_integer, check_positive, check_real, shown
+from fpsolve._support.memory import allowed_memory
 from fpsolve.evolution.call import Call, recorded
 from fpsolve.evolution.saved import Saved
 from fpsolve.grids.phase_space import PhaseSpaceGrid
@@ -20,15 +21,13 @@ from fpsolve.model.laydown import LayDownModel
 from fpsolve.model.potentials.quadratic import QuadraticPotential
 from fpsolve.spectral.bases.choice import check_resolved, discretisation_for
 from fpsolve.spectral.bases.sectors import Discretisation, Sector, Truncation
+from fpsolve.spectral.eigen.following import left_vector
 from fpsolve.spectral.eigen.layout import SPECTRUM
-from fpsolve.spectral.eigen.refinement import Refinement, left_vector, with_residual
+from fpsolve.spectral.eigen.refinement import Refinement
 from fpsolve.spectral.eigen.survey import Mode, Scale
 from fpsolve.spectral.work import DEFAULT_WORK, Work
 
 __all__ = ["Spectrum", "spectrum"]
-
-Complex = NDArray[np.complex128]
-Array = NDArray[np.float64]
 
 # What a spectrum may use unless told otherwise: degrees up to about 500 of the
 # quadratic potential, about a minute.
@@ -224,13 +223,14 @@ def spectrum(
         n,
         tolerance,
         Scale.of(model, essential),
-        allowed_memory(memory_limit),
+        memory_of(memory_limit),
         None if sectors is None else checked_sectors(sectors),
         Work(check_positive("work_limit", work_limit)),
     )
     modes: list[Mode] = []
     for mode in refinement.run():
-        mode = with_residual(discretisation, mode)
+        known = mode.vector, mode.eigenvalue, mode.sector, mode.truncation
+        mode = replace(mode, residual=discretisation.residual(*known))
         modes += [mode, mode.conjugate()][: mode.count]
     modes = modes[:n]
     largest = max((mode.truncation for mode in modes), default=Truncation(0, 0))
@@ -269,11 +269,11 @@ def check_tolerance(tolerance: float) -> float:
     return tolerance
 
 
-def allowed_memory(memory_limit: int | None) -> int:
+def memory_of(limit: int | None) -> int:
     """Bytes for the largest basis."""
-    if memory_limit is None:
-        return min(DEFAULT_MEMORY, int(psutil.virtual_memory().available))
-    return check_integer("memory_limit", memory_limit, 1)
+    if limit is None:
+        return min(DEFAULT_MEMORY, int(allowed_memory()))
+    return check_integer("memory_limit", limit, 1)
 
 
 def essential_of(model: LayDownModel) -> float | None:

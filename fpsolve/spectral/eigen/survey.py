@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csc_array
 
+from fpsolve._support.arrays import Complex
 from fpsolve.model.laydown import LayDownModel
 from fpsolve.spectral.bases.choice import orbit_radius
 from fpsolve.spectral.bases.sectors import Discretisation, Sector, Truncation
@@ -28,6 +29,8 @@ EMPTY = 0.9
 # circular orbit; and, in a strip narrower than NARROW of these units, in units of the
 # last chord that eigenvalues gave, which cost several times as much.
 CHORD, NARROW, WORTH = 0.1, 0.02, 0.25
+# By how much a disc must be wider than the strip to count.
+CLEARLY = 1e-3
 # Of the eigenvalues of a survey, relative to their distance from the shift.
 TOLERANCE = 1e-8
 # Found from two shifts, an eigenvalue differs by rounding only.
@@ -61,7 +64,7 @@ class Mode:
     """
 
     eigenvalue: complex
-    vector: NDArray[np.complex128]
+    vector: Complex
     sector: Sector
     truncation: Truncation
     partner: complex | None = None
@@ -175,6 +178,20 @@ def order(mode: Mode) -> tuple[float, float]:
     return mode.rate, mode.eigenvalue.imag
 
 
+def furthest(cut: float, middle: float) -> float:
+    """Distance of the strip 0 < rate < cut from a shift: that of its further edge."""
+    return max(cut + middle, abs(middle))
+
+
+def half_chord(radius: float, reach: float) -> float:
+    """Half the length of the strip inside a disc, whose edges are at most `reach` away.
+
+    That no branch is lost rests on this: the discs are empty but for what was found,
+    and the chords of neighbours overlap or touch.
+    """
+    return math.sqrt(max(radius**2 - reach**2, 0.0))
+
+
 class Search:
     """All eigenvalues of one sector with a rate below a cut, by overlapping discs.
 
@@ -195,7 +212,7 @@ class Search:
     ) -> None:
         self.sector, self.truncation, self.scale = sector, truncation, scale
         self.work = work
-        self.on_edge = getattr(discretisation, "on_edge", None)
+        self.on_edge = discretisation.on_edge
         self.matrix: csc_array = discretisation.matrix(sector, *truncation)
         self.modes: list[Mode] = []
         self.chord = math.inf
@@ -229,24 +246,29 @@ class Search:
         inverse = ShiftedInverse(self.matrix, complex(middle, frequency), self.work)
         if math.isfinite(self.cut) and (frequency > 0 or not self.sector.has_constants):
             # Most of the axis is far from everything, which is seen at little cost.
-            empty, reach = EMPTY * inverse.distance(), self.cut / 2
-            chord = math.sqrt(max(empty**2 - reach**2, 0.0))
+            empty = EMPTY * inverse.distance()
+            chord = half_chord(empty, furthest(self.cut, middle))
             if chord > self.long_enough(frequency):
                 return chord
+        return self.filled(inverse)
+
+    def filled(self, inverse: ShiftedInverse) -> float:
+        """As `disc`, with ever more of the eigenvalues until they reach across."""
         n_nearest = N_NEAREST
         while True:
             values, vectors = inverse.eigenpairs(n_nearest, tolerance=TOLERANCE)
             distance = np.abs(values - inverse.shift)
+            # Nothing hides within the last of them, which may have a twin itself.
             whole = n_nearest >= self.matrix.shape[0]
             radius = math.inf if whole else (1 - SAME) * distance[-1]
             self.add(values, vectors, distance < radius)
+            # With more modes known the strip may end earlier.
             self.cut = min(self.cut, cut_after(self.modes, self.n, self.scale.limit))
-            if radius == math.inf:
-                return radius
-            # The part of the strip that is furthest from the shift.
-            reach = max(self.cut + middle, abs(middle))
-            if math.isfinite(self.cut) and radius > reach * (1 + 1e-3):
-                self.chord = math.sqrt(radius**2 - reach**2)
+            if whole:
+                return math.inf
+            reach = furthest(self.cut, inverse.shift.real)
+            if radius > reach * (1 + CLEARLY):
+                self.chord = half_chord(radius, reach)
                 return self.chord
             n_nearest *= 2
 
@@ -256,18 +278,7 @@ class Search:
         usual = CHORD * min(unit, 3 * frequency)
         return min(usual, WORTH * self.chord) if self.cut < NARROW * unit else usual
 
-    def spurious(self, vector: NDArray[np.complex128]) -> bool:
-        """Whether an eigenvector belongs to the truncation and not to L."""
-        if self.on_edge is None:
-            return False
-        return bool(self.on_edge(vector, self.sector, self.truncation))
-
-    def add(
-        self,
-        values: NDArray[np.complex128],
-        vectors: NDArray[np.complex128],
-        inside: NDArray[np.bool_],
-    ) -> None:
+    def add(self, values: Complex, vectors: Complex, inside: NDArray[np.bool_]) -> None:
         """Keep what is new; multiple eigenvalues of one disc stay multiple."""
         known = np.array([mode.eigenvalue for mode in self.modes], complex)
         tiny = SAME * (np.abs(values) + self.scale.rate)
@@ -277,7 +288,7 @@ class Search:
         if known.size:
             new &= np.abs(values[:, None] - known).min(axis=1) > tiny
         for i in np.flatnonzero(new):
-            if self.spurious(vectors[:, i]):
+            if self.on_edge(vectors[:, i], self.sector, self.truncation):
                 continue
             # -0.0 would print as a conjugate.
             value = complex(values[i].real, abs(values[i].imag))

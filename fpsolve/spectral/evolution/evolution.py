@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from fpsolve._support.arrays import check_numbers
+from fpsolve._support.arrays import Array, check_numbers
 from fpsolve._support.blas import one_blas_thread
 from fpsolve._support.checks import check_positive
 from fpsolve._support.memory import allowed_memory
@@ -35,7 +35,6 @@ from fpsolve.spectral.work import OutOfWork, Work
 
 __all__ = ["spectral_solve"]
 
-Array = NDArray[np.float64]
 # Refinements before giving up; each multiplies degrees and harmonics by RATIO and
 # divides what is neglected by TIGHTER.
 LEVELS = 6
@@ -291,9 +290,8 @@ def checked_arclengths(s: ArrayLike) -> Array:
     stops = np.atleast_1d(check_numbers("s", s))
     if stops.ndim != 1 or stops.size == 0:
         raise ValueError(f"`s` must be one number or a list of them, got {s!r}.")
-    if not (
-        np.all(np.isfinite(stops)) and stops[0] >= 0 and np.all(np.diff(stops) > 0)
-    ):
+    rising = np.isfinite(stops).all() and (np.diff(stops) > 0).all()
+    if not (rising and stops[0] >= 0):
         raise ValueError(
             f"`s` must be finite, non-negative and increasing, got {stops.tolist()}."
         )

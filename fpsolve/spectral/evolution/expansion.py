@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fpsolve._kernels.ladder import shell_energies
+from fpsolve._support.arrays import Array, Complex
 
 __all__ = ["Expansion", "Limits", "spread"]
 
-Array = NDArray[np.float64]
 # limits[n] is the last harmonic kept at the degrees i + j = n; −1 where none is.
 Limits = NDArray[np.int64]
 ROOM = 30
@@ -60,7 +60,7 @@ class Expansion:
         return int(np.sum((np.arange(self.limits.size) + 1) * (self.limits + 1)))
 
     @property
-    def complex_values(self) -> NDArray[np.complex128]:
+    def complex_values(self) -> Complex:
         """d[i, j, k], shape (n + 1, n + 1, m + 1)."""
         pairs = self.values[:-1, :-1, :-2]
         return np.ascontiguousarray(pairs).view(np.complex128)
@@ -126,6 +126,7 @@ def spread(
     found = significant(energies, threshold)
     width = found.shape[1]
     last = np.where(found.any(axis=1), width - 1 - found[:, ::-1].argmax(axis=1), -1)
+    # A coefficient may vanish by symmetry between others that count.
     last = np.maximum.accumulate(last[::-1])[::-1]
     reach = math.ceil(ROOM * margin)
     room = math.ceil(margin * max(3, int(last.max(initial=0))))

@@ -6,17 +6,16 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import ive, jv
 
 from fpsolve._kernels.ladder import apply_ladder
+from fpsolve._support.arrays import Array
 from fpsolve.model.laydown import LayDownModel
 from fpsolve.spectral.evolution.expansion import Expansion, Limits
 from fpsolve.spectral.work import Work
 
 __all__ = ["ForwardOperator"]
 
-Array = NDArray[np.float64]
 # Chebyshev terms per unit of (half axes) × (arclength) approach one from above as the
 # product grows; beyond this product little is gained and rounding grows.
 REACH = 60.0
@@ -104,6 +103,7 @@ class ForwardOperator:
         sign = 1.0 if square > 0 else -1.0
         coefficients = bessel(centre * ds, focus * ds, sign)
         total = Expansion(coefficients[0] * start.values, start.limits)
+        # U_0 and U_1 = X U_0; from there on two arrays take turns.
         older = np.array(start.values)
         newer = np.zeros_like(older)
         gain = 1.0 / focus
@@ -116,6 +116,7 @@ class ForwardOperator:
                 older, -sign, coefficients[n], total.values,
             )  # fmt: skip
             older, newer = newer, older
+            # While the terms still grow, small ones say nothing of those to come.
             if n % STRIDE == 0 and n >= imaginary * ds:
                 ahead = np.abs(coefficients[n + 1 : n + 1 + STRIDE]).max(initial=0.0)
                 if ahead * (norm(older) + norm(newer)) < tolerance:

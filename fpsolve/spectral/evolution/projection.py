@@ -6,17 +6,17 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import ive
 
+from fpsolve._support.arrays import Array, Complex
 from fpsolve.grids.initial import checked_covariance
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.model.potentials.quadratic import QuadraticPotential
+from fpsolve.spectral.bases.hermite_functions import hermite_functions, root_of_normal
 from fpsolve.spectral.evolution.expansion import Expansion
 
-__all__ = ["DensityStart", "GaussianStart", "hermite_functions"]
+__all__ = ["DensityStart", "GaussianStart"]
 
-Array = NDArray[np.float64]
 # Largest share of the norm that a density on a grid may have in the last tenth of
 # what its grid resolves, relative to the tolerance.
 FINEST = 0.1
@@ -93,7 +93,7 @@ class GaussianStart:
             c[i + 1] = row / root[i + 1]
         return c
 
-    def _angular(self, harmonics: int) -> NDArray[np.complex128]:
+    def _angular(self, harmonics: int) -> Complex:
         k = np.arange(harmonics + 1)
         share = ive(k, self.concentration) / ive(0, self.concentration)
         return np.asarray(share * np.exp(-1j * k * self.angle))
@@ -195,24 +195,6 @@ def checked_density(grid: PhaseSpaceGrid, p: Any) -> Array:
     return normalised
 
 
-def hermite_functions(x: Array, degree: int) -> Array:
-    """√φ(x) He_n(x), orthonormal in L²(dx); shape (degree + 1, x.size).
-
-    φ is the standard normal density. Bounded, so that the recurrence neither
-    overflows nor cancels.
-    """
-    values = np.zeros((degree + 1, x.size))
-    values[0] = np.exp(-0.25 * x**2) / (2 * math.pi) ** 0.25
-    if degree:
-        values[1] = x * values[0]
-    for n in range(1, degree):
-        values[n + 1] = x * values[n] - math.sqrt(n) * values[n - 1]
-        values[n + 1] /= math.sqrt(n + 1)
-    return values
-
-
 def weighted_hermite(x: Array, degree: int) -> Array:
     """He_n(x), normalised, by way of the bounded Hermite functions."""
-    root = np.exp(-0.25 * x**2) / (2 * math.pi) ** 0.25
-    scaled: Array = hermite_functions(x, degree) / root
-    return scaled
+    return hermite_functions(degree, x) / root_of_normal(x)

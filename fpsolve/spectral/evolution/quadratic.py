@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from fpsolve._support.checks import check_positive, shown
+from fpsolve._support.checks import check_kind, check_positive
 from fpsolve.model.laydown import LayDownModel
 from fpsolve.model.potentials.quadratic import QuadraticPotential
 
@@ -13,8 +13,7 @@ __all__ = ["check_model", "checked_tolerance", "quadratic"]
 
 def check_model(model: LayDownModel) -> None:
     """Raise unless the expansion solves the model."""
-    if not isinstance(model, LayDownModel):
-        raise TypeError(f"`model` must be a LayDownModel, got {shown(model)}.")
+    check_kind("model", model, LayDownModel)
     quadratic(model)
     if not model.noise > 0:
         raise ValueError(

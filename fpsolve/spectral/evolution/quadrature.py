@@ -6,17 +6,16 @@ import math
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fpsolve._support.arrays import Array
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.grids.row_sums import MOMENTS
 from fpsolve.model.potentials.quadratic import QuadraticPotential
+from fpsolve.spectral.bases.hermite_functions import hermite_functions
 from fpsolve.spectral.evolution.expansion import Expansion
-from fpsolve.spectral.evolution.projection import hermite_functions
 
 __all__ = ["density_on", "moments", "relative_entropy"]
 
-Array = NDArray[np.float64]
 # Points evaluated at a time.
 CHUNK = 2**18
 REFINEMENTS = 4
@@ -68,6 +67,7 @@ def relative_entropy(h: Expansion, tolerance: float) -> tuple[float, float]:
 def entropy_sums(h: Expansion, x: Array, n_alpha: int) -> tuple[float, float, float]:
     """The entropy, and its changes with half the angles and half the points."""
     weight = np.exp(-0.5 * x**2) * (x[1] - x[0]) / math.sqrt(2 * math.pi)
+    # Every second point of the plane, as on a chequerboard, with twice the weight.
     chequered = 2.0 * (np.add.outer(np.arange(x.size), np.arange(x.size)) % 2)
     full = fewer_angles = fewer_points = 0.0
     for rows, values in slabs(h, x, x, n_alpha):
@@ -112,14 +112,9 @@ def slabs(
     d = h.complex_values
     d = d * (1j ** np.arange(degree + 1))[:, None]
     d *= np.exp(1j * shift * np.arange(harmonics + 1))
-    if 2 * harmonics >= n_alpha:
-        n_fine = n_alpha * math.ceil((2 * harmonics + 1) / n_alpha)
-    else:
-        n_fine = n_alpha
-    functions1, functions2 = (
-        hermite_functions(x1, degree),
-        hermite_functions(x2, degree),
-    )
+    # A multiple of the angles asked for that resolves the highest harmonic.
+    n_fine = n_alpha * math.ceil((2 * harmonics + 1) / n_alpha)
+    functions1, functions2 = (hermite_functions(degree, x) for x in (x1, x2))
     root1, root2 = functions1[0], functions2[0]
     rows_at_once = max(1, CHUNK // (x2.size * n_fine))
     for start in range(0, x1.size, rows_at_once):

@@ -7,9 +7,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.optimize import brentq, minimize
 
+from fpsolve._support.arrays import Array
 from fpsolve._support.checks import check_noise
 from fpsolve.model.potentials.linear import LinearPotential
 from fpsolve.model.potentials.potential import Potential
@@ -25,8 +26,6 @@ __all__ = [
     "large_noise_asymptote",
     "small_noise_asymptote",
 ]
-
-Array = NDArray[np.float64]
 
 # What a noise of zero means, for messages.
 NO_DECAY = "; without noise the density never forgets its start"

@@ -7,8 +7,8 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fpsolve._support.arrays import Array
 from fpsolve.errors import MemoryLimitError, ToleranceError
 from fpsolve.model.laydown import LayDownModel
 from fpsolve.model.potentials.potential import Potential
@@ -18,16 +18,11 @@ from fpsolve.spectral.eigen.gap import spectral_gap
 from fpsolve.spectral.eigen.spectrum import Spectrum, spectrum
 from fpsolve.spectral.evolution.evolution import spectral_solve
 from fpsolve.studies.observables import Observable, equilibrium_moments
-from fpsolve.studies.rates.poisson import (
-    asymptotic_variances,
-    estimated_variances,
-    known_only,
-)
-from fpsolve.studies.rates.relaxation import plan_relaxation, relaxation_case
+from fpsolve.studies.rates.poisson import asymptotic_variances, estimated_variances
+from fpsolve.studies.rates.relaxation import relaxation_case
+from fpsolve.studies.rates.relaxation_plan import plan_relaxation
 
 __all__ = ["PARTS", "rate_case", "sectors_shown"]
-
-Array = NDArray[np.float64]
 
 # Eigenvalues of each sector: a complex pair, or two real ones.
 _PER_SECTOR = 2
@@ -118,7 +113,7 @@ def variance_case(
     NaN where nothing is known; ToleranceError where that is so of all.
     """
     model = LayDownModel(potential, noise)
-    found = known_only(estimated_variances(model, functions, tolerance))
+    found = estimated_variances(model, functions, tolerance).known_only()
     if np.isnan(found.values).all():
         found = asymptotic_variances(model, functions, tolerance=tolerance)
     scale = equilibrium_moments(potential, functions).deviation ** 2

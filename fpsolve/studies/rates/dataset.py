@@ -6,9 +6,9 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import nnls
 
+from fpsolve._support.arrays import Array
 from fpsolve._support.labels import labels, to_json
 from fpsolve.model.potentials.potential import Potential
 from fpsolve.studies.rates.bounds import (
@@ -34,8 +34,6 @@ if TYPE_CHECKING:
     import xarray as xr
 
 __all__ = ["rates_dataset", "theory_curves"]
-
-Array = NDArray[np.float64]
 
 # What the cases of every part return.
 _COLUMNS: dict[str, dict[str, Column]] = {
@@ -85,10 +83,7 @@ _COLUMNS: dict[str, dict[str, Column]] = {
 
 
 def rates_dataset(
-    potential: Potential,
-    noises: Array,
-    cases: Sequence[Case],
-    about: Mapping[str, Any],
+    potential: Potential, noises: Array, cases: Sequence[Case], about: Mapping[str, Any]
 ) -> xr.Dataset:
     """Arrange the cases of a study by noise; NaN where there is none.
 

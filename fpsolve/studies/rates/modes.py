@@ -13,14 +13,12 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fpsolve._support.arrays import Array
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.model.laydown import LayDownModel
 
 __all__ = ["CLASSES", "SlowestMode", "slowest_modes"]
-
-Array = NDArray[np.float64]
 
 # Quarter turns of ξ and α are a symmetry of a square grid: densities fall apart into
 # classes of the angular index modulo 4, which do not mix.
@@ -152,14 +150,18 @@ def _slowest(vectors: Array, spacing: float) -> SlowestMode:
 
 def _leading(vectors: Array, norms: Array, spacing: float) -> tuple[complex, float]:
     """Slowest eigenvalue in the span of the vectors whose residual is small."""
+    # Divided by their norms: the first vectors are by far the largest, and would
+    # decide alone which directions are told from rounding.
     before, after = vectors[:, :-1] / norms[:-1], vectors[:, 1:] / norms[:-1]
     left, singular, right = np.linalg.svd(before, full_matrices=False)
     rank = int(np.count_nonzero(singular > _RANK * singular[0]))
+    # T on an orthonormal basis of the span; T itself is not known, only its images.
     left, images = left[:, :rank], after @ (right[:rank].T / singular[:rank])
     factors, modes = np.linalg.eig(left.T @ images)
     residuals = np.linalg.norm(images @ modes - (left @ modes) * factors, axis=0)
     with np.errstate(divide="ignore"):
         eigenvalues = np.log(factors.astype(complex)) / spacing
+    # From factors to their logarithms over the spacing, which are the eigenvalues.
     residuals = residuals / (np.abs(factors) * spacing)
     kept = residuals < _RESIDUAL * np.abs(eigenvalues.real)
     if not kept.any():

@@ -10,27 +10,20 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import block_array, csc_array
 
+from fpsolve._support.arrays import Array
 from fpsolve._support.blas import one_blas_thread
 from fpsolve.errors import ToleranceError
 from fpsolve.model.laydown import LayDownModel, check_model
 from fpsolve.spectral.bases.sectors import Truncation
 from fpsolve.spectral.eigen.eigenvalues import factorised
-from fpsolve.spectral.eigen.refinement import slowness
+from fpsolve.spectral.eigen.following import slowness
 from fpsolve.spectral.evolution.quadratic import checked_tolerance
 from fpsolve.spectral.work import DEFAULT_WORK, OutOfWork, Work
 from fpsolve.studies.arguments import check_functions
 from fpsolve.studies.observables import Observable
 from fpsolve.studies.rates.poisson_bases import Basis, basis_for
 
-__all__ = [
-    "AsymptoticVariances",
-    "asymptotic_variances",
-    "estimated_variances",
-    "known_only",
-]
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
+__all__ = ["AsymptoticVariances", "asymptotic_variances", "estimated_variances"]
 
 # Parts of a function below this share of it are rounding.
 _SILENT = 1e-12
@@ -64,13 +57,22 @@ class AsymptoticVariances:
     deviations: Array
     truncation: Truncation
 
+    @property
+    def unknown(self) -> NDArray[np.bool_]:
+        """Which values their errors leave nothing of, and which are not zero either."""
+        allowed = _UNKNOWN * np.abs(self.values) + _ZERO * self.deviations**2
+        return np.asarray(~(self.errors <= allowed))
+
+    def known_only(self) -> AsymptoticVariances:
+        """The variances with NaN for those that are not known at all."""
+        values, errors = (np.where(self.unknown, np.nan, one)
+                          for one in (self.values, self.errors))  # fmt: skip
+        return replace(self, values=values, errors=errors)
+
 
 @one_blas_thread()
 def asymptotic_variances(
-    model: LayDownModel,
-    functions: Mapping[str, Observable],
-    *,
-    tolerance: float = 1e-6,
+    model: LayDownModel, functions: Mapping[str, Observable], *, tolerance: float = 1e-6
 ) -> AsymptoticVariances:
     """v = −2⟨f − E f, L⁻¹(f − E f)⟩ in L²(μ): averages of f have the variance v/s.
 
@@ -109,7 +111,7 @@ def asymptotic_variances(
             f"{model.curve!r}."
         )
     found = estimated_variances(model, functions, tolerance)
-    unknown = _unknown(found)
+    unknown = found.unknown
     if unknown.any():
         names = [name for name, one in zip(functions, unknown, strict=True) if one]
         worst = float(np.max(found.errors[unknown] / np.abs(found.values[unknown])))
@@ -148,20 +150,6 @@ def estimated_variances(
     return result
 
 
-def _unknown(found: AsymptoticVariances) -> NDArray[np.bool_]:
-    """Which values their errors leave nothing of, and which are not zero either."""
-    allowed = _UNKNOWN * np.abs(found.values) + _ZERO * found.deviations**2
-    return np.asarray(~(found.errors <= allowed))
-
-
-def known_only(found: AsymptoticVariances) -> AsymptoticVariances:
-    """The variances with NaN for those that are not known at all."""
-    unknown = _unknown(found)
-    values, errors = found.values.copy(), found.errors.copy()
-    values[unknown] = errors[unknown] = np.nan
-    return replace(found, values=values, errors=errors)
-
-
 def _variance(
     basis: Basis, f: Observable, truncation: Truncation, work: Work
 ) -> tuple[float, float]:
@@ -175,6 +163,7 @@ def _variance(
         matrix = basis.matrix(sector, truncation)
         kernel = basis.kernel(sector, truncation)
         if kernel is not None:
+            # Only what is orthogonal to the constants is L of something.
             part = part - kernel @ (kernel.T @ part)
         solution = _solved(matrix, kernel, part, work)
         variance -= 2 * count * float(np.vdot(part, solution).real)
@@ -186,6 +175,7 @@ def _solved(matrix: csc_array, kernel: Array | None, right: Any, work: Work) -> 
     """U with L u = right, orthogonal to the kernel."""
     n = len(right)
     if kernel is not None:
+        # Bordered by its kernel the singular matrix is regular, and u orthogonal to it.
         columns = csc_array(kernel)
         matrix = block_array([[matrix, columns], [columns.T, None]], format="csc")
         right = np.append(right, np.zeros(kernel.shape[1]))

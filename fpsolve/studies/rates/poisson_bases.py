@@ -2,31 +2,27 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 from numpy.polynomial.hermite_e import hermegauss
-from numpy.typing import NDArray
 from scipy.sparse import csc_array
 
+from fpsolve._support.arrays import Array, Complex
 from fpsolve.model.laydown import LayDownModel
 from fpsolve.model.potentials.quadratic import QuadraticPotential
+from fpsolve.spectral.bases.hermite_functions import hermite_polynomials
 from fpsolve.spectral.bases.radial import RadialDiscretisation
 from fpsolve.spectral.bases.radial_basis import radial_basis
-from fpsolve.spectral.bases.sectors import Sector, Truncation
-from fpsolve.spectral.bases.tensor import (
-    TensorDiscretisation,
-    TensorStates,
-    hermite_functions,
-)
+from fpsolve.spectral.bases.sectors import Discretisation, Sector, Truncation
+from fpsolve.spectral.bases.tensor import TensorDiscretisation, TensorStates
 from fpsolve.studies.observables import Observable
 
 __all__ = ["Basis", "basis_for"]
 
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 # Angles in which functions are sampled, and harmonics of theirs that are used.
 _ANGLES, _HARMONICS = 64, 16
@@ -34,26 +30,28 @@ _ANGLES, _HARMONICS = 64, 16
 _SILENT = 1e-12
 
 
-class Basis(Protocol):
+class Basis(ABC):
     """Parts of a function in the invariant subspaces, and the generator there."""
 
+    discretisation: Discretisation
+
+    @abstractmethod
     def parts(
         self, f: Observable, truncation: Truncation
     ) -> Iterator[tuple[Sector, int, Array | Complex]]:
         """Sectors, how often each counts, and coefficients."""
-        ...
 
+    @abstractmethod
     def size(self, truncation: Truncation) -> int:
         """Functions in the sector of the constants."""
-        ...
+
+    @abstractmethod
+    def kernel(self, sector: Sector, truncation: Truncation) -> Array | None:
+        """Orthonormal columns that span the kernel of the matrix, or None."""
 
     def matrix(self, sector: Sector, truncation: Truncation) -> csc_array:
         """The generator on a sector."""
-        ...
-
-    def kernel(self, sector: Sector, truncation: Truncation) -> Array | None:
-        """Orthonormal columns that span the kernel of the matrix, or None."""
-        ...
+        return self.discretisation.matrix(sector, *truncation)
 
 
 def basis_for(model: LayDownModel) -> Basis:
@@ -71,7 +69,7 @@ def basis_for(model: LayDownModel) -> Basis:
 
 
 @dataclass(frozen=True)
-class _RadialBasis:
+class _RadialBasis(Basis):
     """Isotropic potentials: sectors M >= 0; f is real, so that −M only doubles."""
 
     discretisation: RadialDiscretisation
@@ -96,17 +94,15 @@ class _RadialBasis:
     def size(self, truncation: Truncation) -> int:
         return int(self.discretisation.harmonics(Sector(0), truncation).size)
 
-    def matrix(self, sector: Sector, truncation: Truncation) -> csc_array:
-        return self.discretisation.matrix(sector, *truncation)
-
     def kernel(self, sector: Sector, truncation: Truncation) -> Array | None:
         if sector.M:
             return None
         # The constants, or what comes nearest to them in a basis that grows outwards.
         basis = radial_basis(self.discretisation.potential, truncation.degree)
         _, _, right = np.linalg.svd(basis.raising(0, 0, truncation.degree))
-        kernel = np.zeros((self.discretisation.harmonics(sector, truncation).size, 1))
-        kernel[self.discretisation.harmonics(sector, truncation) == 0, 0] = right[-1]
+        k = self.discretisation.harmonics(sector, truncation)
+        kernel = np.zeros((k.size, 1))
+        kernel[k == 0, 0] = right[-1]
         return kernel
 
 
@@ -128,14 +124,19 @@ def _angular_modes(f: Observable, r: Array) -> Complex:
     angles = np.arange(_ANGLES) * (2 * np.pi / _ANGLES)
     xi1 = r[:, None, None] * np.cos(angles)[:, None]
     xi2 = r[:, None, None] * np.sin(angles)[:, None]
-    shape = (len(r), _ANGLES, _ANGLES)
-    with np.errstate(under="ignore"):
-        values = np.broadcast_to(np.asarray(f(xi1, xi2, angles), float), shape)
+    values = _sampled(f, xi1, xi2, angles)
     return np.asarray(np.fft.fft2(values, axes=(1, 2)) / _ANGLES**2)
 
 
+def _sampled(f: Observable, *coordinates: Any) -> Array:
+    """f on the product of its coordinates; it may be a constant in some of them."""
+    shape = np.broadcast_shapes(*map(np.shape, coordinates))
+    with np.errstate(under="ignore"):
+        return np.broadcast_to(np.asarray(f(*coordinates), float), shape)
+
+
 @dataclass(frozen=True)
-class _TensorBasis:
+class _TensorBasis(Basis):
     """Quadratic potentials with σ1 ≠ σ2: four sectors."""
 
     discretisation: TensorDiscretisation
@@ -154,13 +155,11 @@ class _TensorBasis:
         degree, harmonics = truncation
         places, weights = hermegauss(min(2 * degree, 180))
         weights = weights / weights.sum()
-        table = hermite_functions(degree, places) * weights
+        table = hermite_polynomials(degree, places) * weights
         angles = np.arange(_ANGLES) * (2 * np.pi / _ANGLES)
         xi1 = self.discretisation.sigma1 * places[:, None, None]
         xi2 = self.discretisation.sigma2 * places[:, None]
-        shape = (len(places), len(places), _ANGLES)
-        with np.errstate(under="ignore"):
-            values = np.broadcast_to(np.asarray(f(xi1, xi2, angles), float), shape)
+        values = _sampled(f, xi1, xi2, angles)
         modes = np.zeros((degree + 1, degree + 1, harmonics + 1), complex)
         seen = min(harmonics, _HARMONICS) + 1
         waves = np.fft.rfft(values, axis=2)[:, :, :seen] / _ANGLES
@@ -172,9 +171,6 @@ class _TensorBasis:
     def size(self, truncation: Truncation) -> int:
         # Factors of these three-dimensional matrices fill up more.
         return 2 * len(TensorStates(next(self.discretisation.sectors()), truncation).k)
-
-    def matrix(self, sector: Sector, truncation: Truncation) -> csc_array:
-        return self.discretisation.matrix(sector, *truncation)
 
     def kernel(self, sector: Sector, truncation: Truncation) -> Array | None:
         if not sector.has_constants:

@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fpsolve._support.arrays import Array
 from fpsolve._support.checks import check_flag, check_kind, check_positive
 from fpsolve.evolution.call import recorded
 from fpsolve.model.laydown import LayDownModel
@@ -30,8 +30,6 @@ if TYPE_CHECKING:
     import xarray as xr
 
 __all__ = ["DEFAULT_START", "Settings", "rate_versus_noise"]
-
-Array = NDArray[np.float64]
 
 # The start of the examples: off the centre, half as wide as the equilibrium, upwards.
 DEFAULT_START = GaussianLaw((1.5, 0.0), 0.25, np.pi / 2, 4.0)

@@ -4,124 +4,32 @@ from __future__ import annotations
 
 import math
 import warnings
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Callable
+from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import CubicHermiteSpline
 
+from fpsolve._support.arrays import Array
 from fpsolve.density.schemes import drift_kick
 from fpsolve.density.solve import solve
-from fpsolve.density.suggestions import suggest_step
 from fpsolve.evolution.decay import DecayRate, fit_decay
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.model.laydown import LayDownModel
 from fpsolve.model.potentials.potential import Potential
-from fpsolve.studies.constants.poincare import poincare_constant
 from fpsolve.studies.rates.modes import SlowestMode, relative_norm, slowest_modes
+from fpsolve.studies.rates.relaxation_plan import N_SAVED, Plan, plan_relaxation
 from fpsolve.studies.starts import density_and_law
-from fpsolve.studies.suggested_grid import suggest_grid
 
-__all__ = ["Plan", "plan_relaxation", "relaxation_case"]
+__all__ = ["relaxation_case"]
 
-Array = NDArray[np.float64]
-
-N_SAVED = 32
-# e^{−B} at the edge of the box relative to its largest, and for the comparison.
-_EDGE, _COMPARED_EDGE = 2e-7, 1e-5
 # Cells of the comparison are longer by 4/3. Where a kink makes the order two, its
 # error then is 16/9 of that of the run, and their difference 7/9.
-_COARSER, _GRID_FACTOR = 4 / 3, 9 / 7
-# Largest A² ds: Strang splitting resolves the angular diffusion.
-_TURN = 0.8
+_GRID_FACTOR = 9 / 7
 # A class without a mode that stands out is faster if it falls by this factor faster.
 _CLEARLY = 1.5
 # Records at every step until here, in steps; then at least every so much s.
 _DENSE, _RECORD = 16, 0.2
-# Angles by the least noise they suit; the comparison has a quarter fewer.
-_ANGLES = ((4.0, 16), (1.0, 24), (0.3, 32), (0.1, 64), (0.0, 128))
-
-
-@dataclass(frozen=True)
-class Plan:
-    """Grid, step and length of a run to equilibrium, and the grid it is compared with.
-
-    Attributes
-    ----------
-    grid, compared : PhaseSpaceGrid
-    ds : float
-    spacing : float
-        Arclength between two saved densities.
-    """
-
-    grid: PhaseSpaceGrid
-    compared: PhaseSpaceGrid
-    ds: float
-    spacing: float
-
-    @property
-    def s_end(self) -> float:
-        """Arclength at the end of the run."""
-        return N_SAVED * self.spacing
-
-
-def plan_relaxation(
-    model: LayDownModel,
-    tolerance: float,
-    e_folds: float,
-    s_end: float | None = None,
-) -> Plan:
-    """Plan a run in which H falls by about e^{−e_folds}.
-
-    The rate expected for its length interpolates the asymptotes: 1/(2/A² + A²/Λ).
-
-    Parameters
-    ----------
-    model : LayDownModel
-    tolerance : float
-        L1 error that cells and step aim at; see `suggest_grid`.
-    e_folds : float
-    s_end : float, optional
-        Length of the run instead of the one expected.
-    """
-    suggested = suggest_grid(model, tolerance)
-    cell = max(suggested.spacing[:2])
-    angles = next(n for least, n in _ANGLES if model.noise >= least)
-    grid = _grid(model.potential, cell, angles, _EDGE)
-    compared = _grid(model.potential, cell * _COARSER, 3 * angles // 4, _COMPARED_EDGE)
-    ds = min(float(suggest_step(model, grid, tolerance)), _TURN / model.noise**2)
-    if s_end is None:
-        poincare = poincare_constant(model.potential)
-        expected = 1 / (2 / model.noise**2 + model.noise**2 / poincare)
-        s_end = e_folds / (2 * expected)
-    spacing = s_end / N_SAVED
-    return Plan(grid, compared, spacing / math.ceil(spacing / ds), spacing)
-
-
-def _grid(
-    potential: Potential, cell: float, angles: int, edge: float
-) -> PhaseSpaceGrid:
-    """Cells of about that size in a box at whose edge e^{−B} is small."""
-    half1, half2 = (_half_width(potential, axis, edge) for axis in (0, 1))
-    n1, n2 = (4 * math.ceil(2 * half / (4 * cell)) for half in (half1, half2))
-    return PhaseSpaceGrid((half1, half2), (n1, n2, 4 * math.ceil(angles / 4)))
-
-
-def _half_width(potential: Potential, axis: int, edge: float) -> float:
-    places = np.geomspace(1e-3, 1e4, 20_000)
-    point = (places, 0.0) if axis == 0 else (0.0, places)
-    with np.errstate(over="ignore"):
-        value = potential.value(*point)
-    lowest = min(float(value.min()), float(potential.value(0.0, 0.0)))
-    # Beyond the last place inside: B may rise and fall again on the way.
-    inside = np.flatnonzero(value - lowest <= -math.log(edge))
-    if not (inside.size and inside[-1] + 1 < places.size):
-        raise ValueError(
-            f"`potential` must have its throwing range between {places[0]:g} and "
-            f"{places[-1]:g}, got {potential!r}; scale it to one."
-        )
-    return round(float(places[inside[-1] + 1]), 3)
 
 
 def relaxation_case(
@@ -154,14 +62,12 @@ def relaxation_case(
     """
     model = LayDownModel(potential, noise)
     plan = plan_relaxation(model, tolerance, e_folds, s_end)
-    coarse = _Relaxation(model, plan.grid, plan, law, 1)
-    fine = _Relaxation(model, plan.grid, plan, law, 2)
-    other = _Relaxation(model, plan.compared, plan, law, 1)
-    return {
-        **_integral(coarse, fine, other),
-        **_rates(coarse, fine, other),
-        **_description(plan, fine),
-    }
+    runs = _Runs(
+        coarse=_Relaxation(model, plan.grid, plan, law, 1),
+        fine=_Relaxation(model, plan.grid, plan, law, 2),
+        other=_Relaxation(model, plan.compared, plan, law, 1),
+    )
+    return {**_integral(runs), **_rates(runs), **_description(plan, runs.fine)}
 
 
 class _Relaxation:
@@ -215,20 +121,29 @@ def _joined(first: Any, rest: Any, name: str) -> Array:
     return np.concatenate([first.series[name], rest.series[name][1:]])
 
 
-def _integral(
-    coarse: _Relaxation, fine: _Relaxation, other: _Relaxation
-) -> dict[str, float]:
+class _Runs(NamedTuple):
+    """The run with ds, the one with ds/2, and the one on a coarser grid."""
+
+    coarse: _Relaxation
+    fine: _Relaxation
+    other: _Relaxation
+
+    def errors(self, number: Callable[[_Relaxation], float]) -> tuple[float, float]:
+        """What step and grid do to a number of a run."""
+        coarse, fine, other = map(number, self)
+        return abs(fine - coarse) / 3, _GRID_FACTOR * abs(other - coarse)
+
+
+def _integral(runs: _Runs) -> dict[str, float]:
     """I = ∫₀^S H ds, its errors, and a bound of what lies beyond S."""
-    integrals = [run.integral() for run in (coarse, fine, other)]
-    step = abs(integrals[1] - integrals[0]) / 3
-    grid = _GRID_FACTOR * abs(integrals[2] - integrals[0])
-    quadrature = fine.quadrature_error
+    coarse, fine = runs.coarse.integral(), runs.fine.integral()
+    step, grid = runs.errors(_Relaxation.integral)
     return {
-        "inverse_decay_rate": integrals[1] + (integrals[1] - integrals[0]) / 3,
-        "inverse_decay_rate_error": step + grid + quadrature,
+        "inverse_decay_rate": fine + (fine - coarse) / 3,
+        "inverse_decay_rate_error": step + grid + runs.fine.quadrature_error,
         "inverse_decay_rate_step_error": step,
         "inverse_decay_rate_grid_error": grid,
-        "tail_bound": _tail(fine),
+        "tail_bound": _tail(runs.fine),
     }
 
 
@@ -243,17 +158,14 @@ def _tail(run: _Relaxation) -> float:
     return float(np.max(run.entropy[late] * ahead)) / rate
 
 
-def _rates(
-    coarse: _Relaxation, fine: _Relaxation, other: _Relaxation
-) -> dict[str, Any]:
+def _rates(runs: _Runs) -> dict[str, Any]:
     """Decay rate of H: twice that of the slowest mode, each class extrapolated."""
-    names = list(coarse.modes)
-    found = [_extrapolated(*(run.modes[name] for run in (coarse, fine, other)))
-             for name in names]  # fmt: skip
+    fine, names = runs.fine, list(runs.fine.modes)
+    found = [_extrapolated(*(run.modes[name] for run in runs)) for name in names]
     modes, errors = (np.array(column) for column in zip(*found, strict=True))
     apparent = np.array([fine.modes[name].apparent for name in names])
     slowest = _slowest(-modes.real, errors, apparent)
-    line = fit_decay(fine.s, fine.entropy, step_error=_step_error(coarse, fine, other))
+    line = fit_decay(fine.s, fine.entropy, step_error=_step_error(runs))
     if slowest is None:
         rate, error = line.rate / 2, line.standard_error / 2
         _warn_of_line(line, fine.s[-1])
@@ -271,12 +183,9 @@ def _rates(
     }
 
 
-def _step_error(coarse: _Relaxation, fine: _Relaxation, other: _Relaxation) -> float:
+def _step_error(runs: _Runs) -> float:
     """Error of the slope of −ln H from step and grid, relative."""
-    slopes = [_slope(run) for run in (coarse, fine, other)]
-    step = abs(slopes[1] - slopes[0]) / 3
-    grid = _GRID_FACTOR * abs(slopes[2] - slopes[0])
-    return (step + grid) / abs(slopes[1])
+    return sum(runs.errors(_slope)) / abs(_slope(runs.fine))
 
 
 def _slope(run: _Relaxation) -> float:
