@@ -112,48 +112,56 @@ def fit_decay(
     # After the first value at noise level nothing later can be trusted.
     trusted = leading_part(usable)
     level = level_of(s[:trusted], values[:trusted])
-    if window is None and usable.any():
-        clear = leading_part(usable & (values > CLEAR * level))
-        last = s[max(clear - 1, 0)]
-        window = (float(s[0] + (last - s[0]) / 2), float(last))
-    start, stop = (0.0, 0.0) if window is None else checked_window(window)
+    if window is None:
+        clear = usable & (values > CLEAR * level)
+        start, stop = second_half(s, clear) if usable.any() else (0.0, 0.0)
+    else:
+        start, stop = checked_window(window)
     chosen = usable & (s >= start) & (s <= stop)
-    if np.count_nonzero(chosen) < FEWEST:
-        remedy = "record more steps, or fit earlier"
-        if level > 0.0:
-            remedy += (
-                f"; the series levels off at {level:.2g}, which `balanced=True` or a "
-                "finer grid lowers"
-            )
-        raise ValueError(
-            f"`window` must hold at least {FEWEST} values above {NOISE_LEVEL:g}, got "
-            f"{np.count_nonzero(chosen)} in [{start:g}, {stop:g}]; {remedy}."
-        )
+    check_number(int(np.count_nonzero(chosen)), (start, stop), level)
     places, logarithms = s[chosen], np.log(values[chosen])
     # scipy.stats.linregress gives the same, and takes half a second to import.
     line, covariance = np.polyfit(places, logarithms, 1, cov=True)
-    rate = -float(line[0])
+    rate, scatter = -float(line[0]), math.sqrt(covariance[0, 0])
     further = slowest_exponents(places, logarithms, rate)
+    # What may be wrong with a straight line, by what it is compared with.
     distance = float(np.max(np.abs(further - rate))) if further.size else 0.0
     distance = max(distance, continuum_distance(places, logarithms, rate))
-    scatter = math.sqrt(covariance[0, 0])
     shape = math.hypot(scatter, max(bend(places, logarithms) / 2, distance))
     hidden = hidden_error(s[usable], np.log(values[usable]), (start, stop), rate)
     floor = level_error(places, values[chosen], level)
     step = abs(step_error * rate)
     if errors is not None:
         step = math.hypot(step, slope_error(places, values[chosen], errors[chosen]))
-    found = DecayRate(
-        rate=rate,
-        standard_error=math.hypot(shape, hidden, floor, step),
-        amplitude=float(np.exp(line[1])),
-        window=(start, stop),
-        step_error=step,
-    )
+    total = math.hypot(shape, hidden, floor, step)
+    amplitude = float(np.exp(line[1]))
+    found = DecayRate(rate, total, amplitude, (start, stop), step)
     if found.resolved:
         return found
     levels_off = level > 0.0 or bool(further.size and further.min() < LEVEL * rate)
     return replace(found, advice=advice(found, levels_off))
+
+
+def second_half(s: Array, holds: NDArray[np.bool_]) -> tuple[float, float]:
+    """The second half of the arclengths up to the first that does not hold."""
+    last = s[max(leading_part(holds) - 1, 0)]
+    return float(s[0] + (last - s[0]) / 2), float(last)
+
+
+def check_number(n: int, window: tuple[float, float], level: float) -> None:
+    """Raise ValueError if a window holds too few values, with what would help."""
+    if n >= FEWEST:
+        return
+    remedy = "record more steps, or fit earlier"
+    if level > 0.0:
+        remedy += (
+            f"; the series levels off at {level:.2g}, which `balanced=True` or a "
+            "finer grid lowers"
+        )
+    raise ValueError(
+        f"`window` must hold at least {FEWEST} values above {NOISE_LEVEL:g}, got "
+        f"{n} in [{window[0]:g}, {window[1]:g}]; {remedy}."
+    )
 
 
 def leading_part(holds: NDArray[np.bool_]) -> int:

@@ -18,6 +18,7 @@ __all__ = [
     "make_schedule",
     "same_arclength",
     "saved_index",
+    "step_dividing",
 ]
 
 # How far an arclength may be from the one that is meant: relative to its size, or to 1
@@ -118,6 +119,32 @@ def make_schedule(
     saves = tuple(sorted({_step_of(s, start, ds, n_steps) for s in stops}))
     records = sorted({*range(0, n_steps, record_every), n_steps, *saves})
     return Schedule(start, ds, n_steps, tuple(records), saves)
+
+
+def step_dividing(stops: Iterable[float], longest: float, most: int) -> float | None:
+    """Longest step, at most `longest`, of which every stop is a multiple.
+
+    Parameters
+    ----------
+    stops : iterable of float
+        Arclengths from 0, the end of the run the last of them.
+    longest : float
+    most : int
+        None that is shorter than longest/most is looked for: what has only such a
+        step has no sensible one.
+
+    Returns
+    -------
+    float or None
+    """
+    s = np.array(list(stops))
+    end = float(s[-1])
+    fewest = math.ceil(end / longest - 1e-9)
+    for n_steps in range(fewest, most * fewest):
+        places = s * (n_steps / end)
+        if np.all(np.abs(places - np.round(places)) < 1e-6):
+            return end / n_steps
+    return None
 
 
 def checked_span(s_span: Any) -> tuple[float, float]:

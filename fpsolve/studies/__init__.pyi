@@ -2,7 +2,7 @@
 
 from . import limits as limits
 from .agreement.check import CrossCheck as CrossCheck
-from .agreement.cross_check import compare as compare
+from .agreement.compare import compare as compare
 from .agreement.cross_check import cross_check as cross_check
 from .agreement.outcome import AgreementTest as AgreementTest
 from .ergodicity.averages import ErgodicFit as ErgodicFit

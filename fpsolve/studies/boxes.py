@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fpsolve._support.arrays import Array
 from fpsolve._support.checks import check_positive
 from fpsolve.model.curves.table import TabulatedCurve
 from fpsolve.model.laydown import LayDownModel
@@ -22,8 +22,6 @@ from fpsolve.paths.laws import EquilibriumLaw
 from fpsolve.paths.sampling import sample_paths
 
 __all__ = ["Travel", "box_for_travel", "rounded_up"]
-
-Array = NDArray[np.float64]
 
 _N_PATHS = 8192
 _SEEDS = (20090901, 20091002)

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.integrate import cubature
 
+from fpsolve._support.arrays import Array
 from fpsolve.model.potentials.potential import Potential
 from fpsolve.studies.arguments import check_functions
 
@@ -27,7 +27,6 @@ __all__ = [
     "square",
 ]
 
-Array = NDArray[np.float64]
 # f(xi1, xi2, alpha), elementwise.
 Observable = Callable[..., Any]
 

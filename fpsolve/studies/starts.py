@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
+from fpsolve._support.arrays import Array
 from fpsolve.grids import diagnostics, initial
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 
@@ -16,7 +14,7 @@ __all__ = ["density_and_law"]
 MASS_ERROR = 1e-6
 
 
-def density_and_law(p0: Any, grid: PhaseSpaceGrid) -> tuple[NDArray[np.float64], Any]:
+def density_and_law(p0: Any, grid: PhaseSpaceGrid) -> tuple[Array, Any]:
     """The start as a density on the grid and as a law with `.sample`.
 
     Parameters
@@ -29,12 +27,7 @@ def density_and_law(p0: Any, grid: PhaseSpaceGrid) -> tuple[NDArray[np.float64],
     ValueError, TypeError
         If the start has no density, none on this grid, or not the mass one.
     """
-    from fpsolve.paths.laws import (
-        DensityLaw,
-        EquilibriumLaw,
-        GaussianLaw,
-        PointLaw,
-    )
+    from fpsolve.paths.laws import DensityLaw, EquilibriumLaw, GaussianLaw, PointLaw
 
     if type(p0) is PointLaw:
         raise ValueError(
@@ -59,7 +52,7 @@ def density_and_law(p0: Any, grid: PhaseSpaceGrid) -> tuple[NDArray[np.float64],
     return density, DensityLaw(grid, density)
 
 
-def _checked(p0: Any, grid: PhaseSpaceGrid) -> NDArray[np.float64]:
+def _checked(p0: Any, grid: PhaseSpaceGrid) -> Array:
     density = grid.check(p0, "p0")
     mass = diagnostics.mass(density, grid)
     if not abs(mass - 1.0) <= MASS_ERROR:

@@ -110,6 +110,8 @@ def suggest_grid(
     step = min(math.sqrt(tolerance / law) / length, 1.0)
     noise = model.noise * math.sqrt(length)
     width = feature_width_of(nodes, noise)
+    # One interpolation of order eight at every step: 1/step of them in a unit of s may
+    # take three tenths of the tolerance.
     cell = width * (0.3 * tolerance * step / INTERPOLATION_COEFFICIENT) ** (1 / 8)
     kink = slope_at_origin(model.potential, min(nodes.deviations()))
     if kink > 0:

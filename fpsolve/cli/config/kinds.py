@@ -11,7 +11,7 @@ from pydantic import model_validator
 from fpsolve._support.checks import check_tolerance
 from fpsolve.cli.config.sections import Section, one_of, section
 from fpsolve.density.schemes.known import SCHEMES
-from fpsolve.evolution.schedule import make_schedule
+from fpsolve.evolution.schedule import make_schedule, step_dividing
 from fpsolve.grids import initial
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.model.curves.dictionaries import KINDS as CURVES
@@ -142,12 +142,10 @@ class RunSection(SpanSection):
 
         When none down to a tenth does, the span alone is divided.
         """
-        fewest = math.ceil(self.s_end / suggested - 1e-9)
-        for n_steps in range(fewest, 10 * fewest):
-            places = [s * n_steps / self.s_end for s in self.saves()]
-            if all(abs(place - round(place)) < 1e-6 for place in places):
-                return self.s_end / n_steps
-        return self.s_end / fewest
+        step = step_dividing([*self.saves(), self.s_end], suggested, 10)
+        if step is None:
+            step = self.s_end / math.ceil(self.s_end / suggested - 1e-9)
+        return step
 
 
 class OutputSection(Section):

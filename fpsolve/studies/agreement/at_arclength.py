@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from fpsolve._support.arrays import Array
 from fpsolve.density.solution import Solution
 from fpsolve.density.steady_state import SteadyState
 from fpsolve.grids.phase_space import PhaseSpaceGrid
@@ -34,7 +35,6 @@ if TYPE_CHECKING:
 
 __all__ = ["TESTS_PER_STATION", "Station"]
 
-Array = NDArray[np.float64]
 Counts = NDArray[np.int64]
 
 # Counts expected in every cell of a chi-square test: its law is then accurate far
@@ -138,6 +138,7 @@ class Station:
         self, name: str, counts: Counts, probabilities: Array, error: Array | None
     ) -> AgreementTest:
         outcome = chi_square(counts, probabilities, self.size, error)
+        # χ² scatters about its degrees of freedom when there is nothing to find.
         excess = max(outcome.statistic - (outcome.degrees or 0), 0.0)
         off = math.nan
         if error is not None:

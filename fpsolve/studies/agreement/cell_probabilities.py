@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import fft
 
+from fpsolve._support.arrays import Array
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 
 __all__ = ["cell_averages", "cell_probabilities"]
-
-Array = NDArray[np.float64]
 
 
 def cell_averages(p: Array) -> Array:

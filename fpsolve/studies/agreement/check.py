@@ -10,6 +10,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from fpsolve._support.arrays import Array
 from fpsolve.evolution.call import Call
 from fpsolve.evolution.saved import Saved
 from fpsolve.evolution.schedule import index_of
@@ -20,8 +21,6 @@ from fpsolve.studies.agreement.outcome import AgreementTest
 from fpsolve.studies.agreement.wording import report
 
 __all__ = ["CrossCheck"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

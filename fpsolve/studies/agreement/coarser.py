@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from fpsolve._support.arrays import Array
 from fpsolve.density.schemes.dictionaries import describe_scheme, scheme_from_dict
 from fpsolve.density.schemes.scheme import Scheme
 from fpsolve.density.solution import Solution
@@ -32,8 +33,6 @@ __all__ = [
     "start_noncentrality",
     "within_error",
 ]
-
-Array = NDArray[np.float64]
 
 # What a geometric series of differences is multiplied by, and the least share of one
 # that is the error: orders above eight are not believed.
@@ -88,6 +87,7 @@ def within_error(
     coarser : sequence of Solution
         One or two runs, on grids that are ever coarser.
     """
+    # Even numbers of cells: the three directions are not refined by quite the same.
     ratio = max(n / m for n, m in zip(grid.shape, coarser[0].grid.shape, strict=True))
     factor = 1.0 / (ratio - 1.0) if ratio > 1.0 else math.nan
     cells = [

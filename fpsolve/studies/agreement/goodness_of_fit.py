@@ -16,9 +16,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import optimize, stats
 
+from fpsolve._support.arrays import Array
+
 __all__ = ["POWER", "Outcome", "chi_square", "largest_deviation", "scores", "z_score"]
 
-Array = NDArray[np.float64]
 Counts = NDArray[np.int64]
 
 POWER = 0.99

@@ -7,9 +7,10 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
+from fpsolve._support.arrays import Array
+
 __all__ = ["ELSEWHERE", "equal_probability_bins", "equal_probability_boxes"]
 
-Array = NDArray[np.float64]
 Labels = NDArray[np.intp]
 Box = tuple[slice, ...]
 

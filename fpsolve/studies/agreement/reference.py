@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fpsolve._support.arrays import Array
 from fpsolve._support.checks import told_apart
 from fpsolve.density.solution import Solution
 from fpsolve.density.steady_state import SteadyState
@@ -17,16 +17,7 @@ from fpsolve.evolution.schedule import index_of
 from fpsolve.grids import row_sums as functionals
 from fpsolve.model.laydown import LayDownModel
 
-__all__ = [
-    "MOMENTS",
-    "Reference",
-    "describe",
-    "model_of",
-    "places",
-    "reference_at",
-]
-
-Array = NDArray[np.float64]
+__all__ = ["MOMENTS", "Reference", "describe", "model_of", "places", "reference_at"]
 
 MOMENTS = (*functionals.MOMENTS, "mean_square")
 

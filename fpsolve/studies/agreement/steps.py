@@ -5,16 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
-import numpy as np
-from numpy.typing import NDArray
-
+from fpsolve._support.arrays import Array
 from fpsolve.density.suggestions import suggest_step
+from fpsolve.evolution.schedule import step_dividing
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.model.laydown import LayDownModel
 
 __all__ = ["common_step", "paths_step", "solver_step", "step_bias"]
-
-Array = NDArray[np.float64]
 
 # A step this many times smaller than needed is a sign that the arclengths have no
 # sensible common divisor.
@@ -40,16 +37,13 @@ def common_step(s: Array, longest: float) -> float:
     ValueError
         If there is none that is not far smaller.
     """
-    end = float(s[-1])
-    fewest = math.ceil(end / longest - 1e-9)
-    for n_steps in range(fewest, MOST_DIVISIONS * fewest):
-        positions = s * (n_steps / end)
-        if np.all(np.abs(positions - np.round(positions)) < 1e-6):
-            return end / n_steps
-    raise ValueError(
-        f"`s` must be multiples of one step near {longest:.3g}, got "
-        f"{', '.join(f'{one:g}' for one in s)}; round them, or give `ds`."
-    )
+    step = step_dividing(s, longest, MOST_DIVISIONS)
+    if step is None:
+        raise ValueError(
+            f"`s` must be multiples of one step near {longest:.3g}, got "
+            f"{', '.join(f'{one:g}' for one in s)}; round them, or give `ds`."
+        )
+    return step
 
 
 def step_bias(ds: float, solver_ds: float, error: float) -> float:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import eigh_tridiagonal
 
 from fpsolve.model.potentials.linear import LinearPotential
@@ -13,8 +12,6 @@ from fpsolve.model.potentials.potential import Potential
 from fpsolve.model.potentials.quadratic import QuadraticPotential
 
 __all__ = ["poincare_constant"]
-
-Array = NDArray[np.float64]
 
 # Cells of the two radial grids, whose values are extrapolated; the share of e^{−B}
 # outside, in which a function that grows like e^{B/2} still fits.

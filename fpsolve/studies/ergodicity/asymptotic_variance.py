@@ -6,11 +6,10 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+
+from fpsolve._support.arrays import Array
 
 __all__ = ["SETTLED", "Minimum", "jackknife_error", "least_noise", "settled_slope"]
-
-Array = NDArray[np.float64]
 
 # s error² is taken as settled from this share of the longest average on.
 SETTLED = 0.25

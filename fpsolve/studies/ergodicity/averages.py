@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fpsolve._support.arrays import Array
 from fpsolve._support.blas import one_blas_thread
 from fpsolve._support.checks import check_integer, check_kind, check_positive
 from fpsolve._support.labels import labels, to_json
@@ -23,18 +23,12 @@ from fpsolve.studies.arguments import noises_of, series_of
 from fpsolve.studies.ergodicity.asymptotic_variance import SETTLED
 from fpsolve.studies.ergodicity.dataset import averages_dataset
 from fpsolve.studies.ergodicity.fit import ErgodicFit, fit_ergodic_error
-from fpsolve.studies.observables import (
-    Observable,
-    equilibrium_moments,
-    functions_of,
-)
+from fpsolve.studies.observables import Observable, equilibrium_moments, functions_of
 
 if TYPE_CHECKING:
     import xarray as xr
 
 __all__ = ["ErgodicFit", "ergodic_averages", "fit_ergodic_error"]
-
-Array = NDArray[np.float64]
 
 # Paths are averaged in this many batches, whose scatter gives every uncertainty.
 N_BATCHES = 40

@@ -7,8 +7,8 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fpsolve._support.arrays import Array
 from fpsolve._support.labels import labels
 from fpsolve.model.potentials.potential import Potential
 from fpsolve.studies.ergodicity.asymptotic_variance import settled_slope
@@ -19,8 +19,6 @@ if TYPE_CHECKING:
     import xarray as xr
 
 __all__ = ["averages_dataset"]
-
-Array = NDArray[np.float64]
 
 
 def averages_dataset(

@@ -8,9 +8,10 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.optimize import nnls
 
+from fpsolve._support.arrays import Array
 from fpsolve._support.checks import check_positive
 from fpsolve.studies.ergodicity.asymptotic_variance import (
     SETTLED,
@@ -25,8 +26,6 @@ if TYPE_CHECKING:
     import xarray as xr
 
 __all__ = ["ErgodicFit", "ErrorShape", "fit_ergodic_error"]
-
-Array = NDArray[np.float64]
 
 _TRENDS = {
     "rising": "fastest at the smallest noise",
@@ -177,6 +176,7 @@ def fit_ergodic_error(dataset: xr.Dataset, s_from: float | None = None) -> Ergod
         name: _fit(name, noises, s, s_from, batches)
         for name, batches in zip(names, relative, strict=True)
     }
+    # At every noise and s the batches of that function whose error is largest there.
     largest = np.argmax(relative.mean(axis=1), axis=0)[None, None]
     worst = np.take_along_axis(relative, largest, axis=0)[0]
     return ErgodicFit(shapes, _fit("worst", noises, s, s_from, worst), float(s_from))

@@ -5,16 +5,14 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fpsolve._support.arrays import Array
 from fpsolve.grids import diagnostics
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.model.laydown import LayDownModel
 from fpsolve.studies.limits.plane_limit import Approximation
 
 __all__ = ["distances"]
-
-Array = NDArray[np.float64]
 
 # Angles of a norm for every angle of the grid.
 _FINER = 4

@@ -5,17 +5,15 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import i0e
 
+from fpsolve._support.arrays import Array
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.paths.laws import GaussianLaw
 from fpsolve.reduced.energy.grid import EnergyGrid
 from fpsolve.reduced.energy.process import EnergyProcess
 
 __all__ = ["N_FUNCTIONS", "SmoothedLaw", "density_of", "energy_masses"]
-
-Array = NDArray[np.float64]
 
 N_FUNCTIONS = 12
 _DEGREE = 3

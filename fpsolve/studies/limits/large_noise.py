@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fpsolve._support.arrays import Array
 from fpsolve._support.checks import check_finite, check_kind, check_positive
 from fpsolve._support.labels import to_json
 from fpsolve.evolution.call import recorded
@@ -37,8 +37,6 @@ if TYPE_CHECKING:
     import xarray as xr
 
 __all__ = ["LARGE_NOISE_START", "Settings", "large_noise_limit"]
-
-Array = NDArray[np.float64]
 
 # Off the centre, narrower than the equilibrium, and in a direction of its own; for
 # e^{−B} of deviation one.

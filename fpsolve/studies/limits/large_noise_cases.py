@@ -7,9 +7,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
+from fpsolve._support.arrays import Array
 from fpsolve.density.error_laws import feature_width_of
 from fpsolve.density.schemes import drift_kick
 from fpsolve.density.solve import solve
@@ -48,7 +46,6 @@ _GAP_TOLERANCE = 1e-11
 _ANY_ERROR = 2.0
 # Largest p0/p_S that is evolved as such.
 _CONTRAST = 1e4
-Array = NDArray[np.float64]
 Numbers = dict[str, float]
 
 
@@ -121,6 +118,7 @@ def deviation_of(potential: Potential) -> float:
 def _half_widths(potential: Potential, pull: float) -> tuple[float, float]:
     """Where e^{−B + w|ξ1|} has fallen as far as e^{−B} at the edge of its box."""
     half1, half2 = box_half_widths(potential, _LOST)
+    # On a belt B is tilted by wξ1, so that the box has to be longer along it.
     enough, reach = float(potential.value(half1, 0.0)), half1
     while float(potential.value(reach, 0.0)) - abs(pull) * reach < enough:
         reach *= 1.02

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from fpsolve._support.arrays import Array
 from fpsolve._support.labels import labels
 from fpsolve.model.potentials.potential import Potential
 from fpsolve.model.potentials.quadratic import QuadraticPotential
@@ -26,8 +27,6 @@ if TYPE_CHECKING:
     import xarray as xr
 
 __all__ = ["large_noise_dataset"]
-
-Array = NDArray[np.float64]
 
 
 def large_noise_dataset(

@@ -6,14 +6,12 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.stats import linregress
 
-from fpsolve._support.arrays import check_finite_numbers, check_numbers
+from fpsolve._support.arrays import Array, check_finite_numbers, check_numbers
 
 __all__ = ["FittedOrder", "fitted_order", "observed_orders"]
-
-Array = NDArray[np.float64]
 
 # An error is used while it exceeds its own uncertainty so many times.
 _ABOVE_FLOOR = 3.0

@@ -7,22 +7,19 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import i0e, i1e
 
+from fpsolve._support.arrays import Array
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.grids.plane import PlaneGrid
 from fpsolve.model.laydown import LayDownModel
 from fpsolve.model.potentials.quadratic import QuadraticPotential
 from fpsolve.paths.laws import GaussianLaw
 from fpsolve.reduced.hydrodynamic.limit import HydrodynamicLimit
-from fpsolve.reduced.hydrodynamic.ornstein_uhlenbeck import (
-    OrnsteinUhlenbeckLimit,
-)
+from fpsolve.reduced.hydrodynamic.ornstein_uhlenbeck import OrnsteinUhlenbeckLimit
 
 __all__ = ["Approximation", "stationary_limit", "transient_limit"]
 
-Array = NDArray[np.float64]
 PlaneDensity = Callable[[PlaneGrid], Array]
 
 # The centres of a cell-centred grid are among those of one three times as fine, but

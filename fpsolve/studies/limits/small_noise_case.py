@@ -6,8 +6,8 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fpsolve._support.arrays import Array
 from fpsolve.density.schemes import drift_kick
 from fpsolve.density.solve import solve
 from fpsolve.grids import initial
@@ -21,8 +21,6 @@ from fpsolve.reduced.energy.process import EnergyProcess
 from fpsolve.studies.limits.energy_law import SmoothedLaw, energy_masses
 
 __all__ = ["half_width_for", "small_noise_case"]
-
-Array = NDArray[np.float64]
 
 # The box leaves this share of e^{-B} outside.
 _OUTSIDE = 3e-5

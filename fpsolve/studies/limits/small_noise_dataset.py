@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fpsolve._support.arrays import Array
 from fpsolve._support.labels import labels, to_json
 from fpsolve.model.potentials.potential import Potential
 from fpsolve.studies.limits.energy_law import N_FUNCTIONS
@@ -19,8 +19,6 @@ if TYPE_CHECKING:
     import xarray as xr
 
 __all__ = ["small_noise_dataset"]
-
-Array = NDArray[np.float64]
 
 _OF_LAWS = ("function",)
 # What a case returns.

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from fpsolve._support.arrays import Array
 from fpsolve._support.labels import labels, made_with, marked, to_json
 from fpsolve.errors import RunInterrupted
 from fpsolve.model.potentials.dictionaries import potential_to_dict
@@ -28,7 +29,6 @@ __all__ = [
     "variables_of",
 ]
 
-Array = NDArray[np.float64]
 # What a case returns: its meaning, and its dimensions beyond those of the cases.
 Column = tuple[str, tuple[str, ...]]
 # Stands for a word, which has no unit and is empty where there is none.
@@ -56,7 +56,7 @@ def swept(
 
 
 def by_noise_and_part(
-    cases: Iterable[Case], noises: Array, parts: Sequence[str]
+    cases: Sequence[Case], noises: Array, parts: Sequence[str]
 ) -> NDArray[Any]:
     """The cases as an array over (noise, part), None where a part was not asked for."""
     places = [(case.arguments["noise"], case.arguments["part"]) for case in cases]
