@@ -28,8 +28,10 @@ from reporting import Report, save_figure  # noqa: E402
 import fpsolve as fp  # noqa: E402
 from fpsolve.paths import GaussianLaw  # noqa: E402
 from fpsolve.plotting import plot_large_noise  # noqa: E402
-from fpsolve.studies.constants.gap_expansion import next_gap_term  # noqa: E402
-from fpsolve.studies.constants.poincare import poincare_constant  # noqa: E402
+from fpsolve.studies.constants.poincare import (  # noqa: E402
+    next_gap_term,
+    poincare_constant,
+)
 from fpsolve.studies.limits.distances import distances  # noqa: E402
 from fpsolve.studies.limits.large_noise import LARGE_NOISE_START  # noqa: E402
 from fpsolve.studies.limits.plane_limit import (  # noqa: E402

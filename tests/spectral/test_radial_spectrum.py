@@ -473,8 +473,8 @@ def test_functions_odd_in_the_angle_have_a_threshold_of_their_own():
         exact = np.linalg.eigvals(matrix).real.max()
         # The condition of the matrix at A = 0.7.
         assert abs(essential_threshold(1.0, noise, parity=-1) - exact) < 1e-9
-        radial = RadialDiscretisation(LINEAR, noise)
-        assert radial.threshold(ODD) < radial.threshold(EVEN)
+        odd = essential_threshold(1.0, noise, parity=-1)
+        assert odd < essential_threshold(1.0, noise, parity=1)
 
 
 def test_eigenvalues_accumulate_at_the_threshold_and_do_not_cross_it_by_much():

@@ -26,8 +26,7 @@ from fpsolve.reduced.hydrodynamic import HydrodynamicLimit
 from fpsolve.spectral.eigen.gap import spectral_gap
 from fpsolve.spectral.evolution.evolution import spectral_solve
 from fpsolve.spectral.evolution.steady import spectral_steady_state
-from fpsolve.studies.constants.gap_expansion import next_gap_term
-from fpsolve.studies.constants.poincare import poincare_constant
+from fpsolve.studies.constants.poincare import next_gap_term, poincare_constant
 from fpsolve.studies.limits.balance import balanced_force
 from fpsolve.studies.limits.distances import distances
 from fpsolve.studies.limits.large_noise import LARGE_NOISE_START, large_noise_limit

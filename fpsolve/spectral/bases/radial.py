@@ -13,7 +13,6 @@ from fpsolve._support.arrays import Array, Complex
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.model.potentials.potential import Potential
 from fpsolve.model.potentials.power import PowerPotential
-from fpsolve.spectral.bases.essential import asymptotic_slope, essential_threshold
 from fpsolve.spectral.bases.isotropic import (
     harmonics_of,
     index_of,
@@ -88,11 +87,6 @@ class RadialDiscretisation(Discretisation):
         if isinstance(self.potential, PowerPotential) and self._basis(degree).smooth:
             step = int(self.potential.exponent) - 1
         return Truncation(degree + step, harmonics + 1)
-
-    def threshold(self, sector: Sector) -> float | None:
-        """Top of the essential spectrum in a sector, or None without one."""
-        slope = asymptotic_slope(self.potential)
-        return essential_threshold(slope, self.noise, sector.parity)
 
     def harmonics(self, sector: Sector, truncation: Truncation) -> Integers:
         """The harmonic k of every basis function."""

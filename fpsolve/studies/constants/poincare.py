@@ -1,4 +1,4 @@
-"""Poincaré constants of e^{−B} on the plane."""
+"""Λ and c of gap·A² = Λ (1 + c ε² + O(ε⁴)): constants of e^{−B} on the plane."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from fpsolve.model.potentials.linear import LinearPotential
 from fpsolve.model.potentials.potential import Potential
 from fpsolve.model.potentials.quadratic import QuadraticPotential
 
-__all__ = ["poincare_constant"]
+__all__ = ["next_gap_term", "poincare_constant", "require_confining"]
 
 # Cells of the two radial grids, whose values are extrapolated; the share of e^{−B}
 # outside, in which a function that grows like e^{B/2} still fits.
@@ -48,6 +48,27 @@ def poincare_constant(potential: Potential) -> float:
             f"{potential!r}."
         )
     return min(_extrapolated(potential, 0), _extrapolated(potential, 1))
+
+
+def next_gap_term(potential: Potential) -> float:
+    """c = 2Λ − E‖N‖²/(2Λ Eψ²), ψ the slowest mode of −Δ + ∇B·∇ and E under e^{−B}.
+
+    N is the symmetric part without trace of ∇²ψ + ∇B ⊗ ∇ψ, ‖·‖ the Frobenius norm.
+    In closed form for quadratic B, (7/σ₁² − 1/σ₂²)/4 with σ₁ ≥ σ₂ (ψ = ξ1), and for
+    B = K‖ξ‖, −K²/48 (ψ = ξ1 e^{K‖ξ‖/3}); NaN for others. Derived in docs/limits.md.
+
+    Parameters
+    ----------
+    potential : Potential
+    """
+    if isinstance(potential, QuadraticPotential):
+        wide, narrow = potential.sigma1, potential.sigma2
+        if wide < narrow:
+            wide, narrow = narrow, wide
+        return (7 / wide**2 - 1 / narrow**2) / 4
+    if isinstance(potential, LinearPotential):
+        return -(potential.slope**2) / 48
+    return math.nan
 
 
 def require_confining(potential: Potential) -> None:

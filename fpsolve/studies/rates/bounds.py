@@ -15,8 +15,11 @@ from fpsolve._support.checks import check_noise
 from fpsolve.model.potentials.linear import LinearPotential
 from fpsolve.model.potentials.potential import Potential
 from fpsolve.model.potentials.quadratic import QuadraticPotential
-from fpsolve.studies.constants.gap_expansion import next_gap_term
-from fpsolve.studies.constants.poincare import poincare_constant, require_confining
+from fpsolve.studies.constants.poincare import (
+    next_gap_term,
+    poincare_constant,
+    require_confining,
+)
 
 __all__ = [
     "NO_DECAY",

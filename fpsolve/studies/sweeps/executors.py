@@ -3,20 +3,23 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator, Mapping
+import pickle
+import sys
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from concurrent.futures import Executor, Future, ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from multiprocessing.context import SpawnContext, SpawnProcess
+from types import ModuleType
 from typing import Any
 
 from fpsolve._support.checks import check_integer
-from fpsolve.studies.sweeps.main_module import hidden_main, is_needed
 
 __all__ = ["executor_for", "finished_tasks"]
 
 Task = tuple[Any, ...]
 Found = tuple[int, Any, Exception | None]
+_MAIN = "__main__"
 _GUARD = (
     "a new process ended before it was ready; a script needs the guard "
     '`if __name__ == "__main__":` around what it runs, or pass `workers=0` to stay in '
@@ -91,8 +94,36 @@ class _ScriptlessProcess(SpawnProcess):
 
     def start(self) -> None:
         """Start it."""
-        with hidden_main():
+        with _hidden_main():
             super().start()
+
+
+def _runs_script(tasks: Iterable[Any]) -> bool:
+    """Whether a process needs the user's script for one of the tasks.
+
+    It does for functions and classes that are defined there; a pickle names their
+    module.
+    """
+    try:
+        return any(_MAIN.encode() in pickle.dumps(task) for task in tasks)
+    # What cannot be pickled fails where it is sent, with an error of its own.
+    except Exception:
+        return True
+
+
+@contextmanager
+def _hidden_main() -> Iterator[None]:
+    """Start processes from here as if there were no script.
+
+    A spawned process runs the module `__main__` again, for what it may define; in a
+    script without the guard ``if __name__ == "__main__":`` that is everything.
+    """
+    script = sys.modules[_MAIN]
+    sys.modules[_MAIN] = ModuleType(_MAIN)
+    try:
+        yield
+    finally:
+        sys.modules[_MAIN] = script
 
 
 def prepare(threads: int) -> None:
@@ -174,7 +205,7 @@ def _completed(executor: Executor, tasks: Mapping[int, Task]) -> Iterator[Found]
 def _in_processes(made: SpawnedProcesses, tasks: Mapping[int, Task]) -> Iterator[Found]:
     """As `_completed`; a process that dies fails its own task only."""
     left = dict(tasks)
-    runs_script = is_needed(left.values())
+    runs_script = _runs_script(left.values())
     try:
         with made.pool(runs_script=runs_script) as pool:
             _check_ready(pool)
