@@ -32,8 +32,8 @@ SCRIPTS = (
     "performance/paths.py",
     "performance/reduced.py",
 )
-# For every night: kills by the dozen, times that a shared machine only blurs, and claims
-# that tests hold on other models, shorter arclengths or fewer paths.
+# For every night: kills by the dozen, times that a shared machine only blurs, and
+# claims that tests hold as well, on other models, shorter arclengths or fewer paths.
 NIGHTLY = {
     "entropy_identity.py": "tests/density/test_invariants.py",
     "path_bias.py": "tests/paths/test_path_accuracy.py",
