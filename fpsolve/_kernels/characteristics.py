@@ -4,6 +4,8 @@ Feet are given in index units (cell i is at i), periodic in all three directions
 Lagrange polynomials of 4 points (cubic) or 6 points (quintic) in each direction.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 from numba import prange
 
@@ -11,6 +13,26 @@ from fpsolve._kernels.compiling import njit
 
 # Part of a cell that is rounding of a foot.
 ON_A_NODE = 1e-9
+
+
+class Displacement(NamedTuple):
+    """δ = η b ds² between the two feet of a cell and the middle.
+
+    speed1, speed2 (n_alpha,) its ξ-part in cells; the α-part in cells is
+    angular · (force1 sin α − force2 cos α) with forces (n1, n2). slope1, slope2
+    (n_alpha,) are the ξ-part in units of length where h stands for e^{B} p, zero where
+    it is p itself.
+    """
+
+    speed1: np.ndarray
+    speed2: np.ndarray
+    force1: np.ndarray
+    force2: np.ndarray
+    cosine: np.ndarray
+    sine: np.ndarray
+    angular: float
+    slope1: np.ndarray
+    slope2: np.ndarray
 
 
 @njit(cache=True, error_model="numpy")
@@ -228,17 +250,14 @@ def interpolate_at_feet(h, feet, growth, n_points, limited, out):
 
 @njit(cache=True, parallel=True, fastmath={"contract"}, error_model="numpy")
 def interpolate_at_perturbed_feet(
-    h, feet, growth, speed1, speed2, force1, force2, cosine, sine, angular,
-    slope1, slope2, n_points, limited, upper, out,
-):  # fmt: skip
+    h, feet, growth, displacement, n_points, limited, upper, out
+):
     """out = e^growth max (or min) of e^{∓δ·∇B} h at foot ± δ, δ = η b ds².
 
-    h, out (n1, n2, n_alpha); feet and growth as in `interpolate_at_feet`;
-    speed1, speed2 (n_alpha,) the ξ-part of δ in cells; the α-part is
-    angular · (force1 sin α − force2 cos α) with forces (n1, n2). slope1, slope2
-    (n_alpha,) are the ξ-part of δ in units of length where h stands for e^{B} p,
-    zero where it is p itself. `upper` chooses the maximum.
+    h, out (n1, n2, n_alpha); feet and growth as in `interpolate_at_feet`; δ as in
+    `Displacement`. `upper` chooses the maximum.
     """
+    speed1, speed2, force1, force2, cosine, sine, angular, slope1, slope2 = displacement
     n1, n2, n_alpha = h.shape
     grows = growth.size > 1
     for i in prange(n1):

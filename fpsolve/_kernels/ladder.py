@@ -13,13 +13,14 @@ from fpsolve._kernels.compiling import njit
 
 
 @njit(cache=True, fastmath={"contract"}, error_model="numpy")
-def apply_ladder(
-    c, limit, scale1, scale2, diffusivity, belt, a, b, previous, e, weight, total
-):
+def apply_ladder(c, limit, numbers, recurrence, previous, weight, total):
     """previous ← a L*c + b c + e previous; then total += weight · previous.
 
-    The operator is truncated to `limit`; scale1 = 1/σ₁, scale2 = 1/σ₂.
+    The operator is truncated to `limit`; numbers (1/σ₁, 1/σ₂, diffusivity, belt);
+    recurrence (a, b, e).
     """
+    scale1, scale2, diffusivity, belt = numbers
+    a, b, e = recurrence
     degree = limit.shape[0] - 1
     harmonic = np.empty(c.shape[2])
     for m in range(c.shape[2]):

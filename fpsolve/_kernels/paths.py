@@ -9,6 +9,7 @@ neighbours are.
 
 import math
 from fractions import Fraction
+from typing import NamedTuple
 
 import numpy as np
 from numba import prange
@@ -41,6 +42,15 @@ LN2, TURN = math.log(2.0), 2.0 * math.pi
 FARTHEST = 16.0
 # Below this distance the direction of a force ξ/|ξ| fades out; |ξ|² must not underflow.
 NEAREST = 1e-150
+
+
+class Noise(NamedTuple):
+    """Numbers of the first path and of the first step, which count; key; A √ds."""
+
+    path: int
+    step: int
+    key: tuple[int, int]
+    scale: float
 
 
 @njit(cache=True, forceinline=True, fastmath={"contract"}, error_model="numpy")
@@ -380,18 +390,13 @@ def store_block(w, start, n_lanes, state):
 
 
 @njit(cache=True, parallel=True, fastmath={"contract"}, error_model="numpy")
-def advance_paths(
-    path, step, key, ds, noise_scale, potential, shifts, method, trace, state
-):
+def advance_paths(noise, ds, potential, shifts, method, trace, state):
     """Advance every path by as many steps as there are pairs of shifts.
 
     Parameters
     ----------
-    path, step : int
-        Numbers of the first path and of the first step: the counters of the noise.
-    key : (int, int)
-    ds, noise_scale : float
-        Step and A √ds.
+    noise : Noise
+    ds : float
     potential : (int, float, float)
         Kind and its two parameters.
     shifts : ndarray, shape (n_steps, 2, 2)
@@ -402,6 +407,7 @@ def advance_paths(
     state : ndarray, shape (5, n_paths)
         ξ1, ξ2, cos α, sin α and full turns; changed in place.
     """
+    path, step, key, noise_scale = noise
     n_paths, n_steps = state.shape[1], shifts.shape[0]
     for block in prange((n_paths + LANES - 1) // LANES):
         w = np.zeros(N_ROWS * LANES)

@@ -7,6 +7,8 @@ the size; turned into the frame of ∇B; multiplied by the matrix of their |∇B
 brought back. Batches have a fixed size, so that results do not depend on threads.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 from numba import prange
 
@@ -16,6 +18,36 @@ from fpsolve._kernels.lanes import LANES, fused, put, spread, take, transposed
 QUADS_PER_BATCH = 4
 ROWS_PER_BATCH = LANES * QUADS_PER_BATCH
 BATCHES_PER_CHUNK = 4
+
+
+class RotationTable(NamedTuple):
+    """Rows in quads of equal |∇B|, and M(|∇B|) = R½ D R½ for them.
+
+    Attributes
+    ----------
+    rows : ndarray of int, shape (4 n_quads,)
+        Row numbers in the order of |∇B|; four at a time share a matrix. Where there
+        are not four, the last is repeated: in one batch, as the rotation is in place.
+    matrix_of : ndarray of int, shape (n_quads,)
+        Which matrix, or which interval of interpolation.
+    coefficients : ndarray, shape (n_quads, Q, 4)
+        Interpolation weights of the rows of a quad; Q = 1 for exact matrices.
+    matrices : ndarray, shape (Q, n_intervals, M, M)
+        Mode in, mode out; M = n_alpha/2.
+    damping : float
+        Factor of the Nyquist mode.
+    """
+
+    rows: np.ndarray
+    matrix_of: np.ndarray
+    coefficients: np.ndarray
+    matrices: np.ndarray
+    damping: float
+
+    @property
+    def nbytes(self) -> int:
+        """Memory of the matrices, the largest part."""
+        return self.matrices.nbytes
 
 
 @njit(cache=True, fastmath={"contract"}, error_model="numpy")
@@ -252,18 +284,14 @@ def limit_row(row):
 
 
 @njit(cache=True, parallel=True, fastmath={"contract"}, error_model="numpy")
-def rotate(
-    p, rows, matrix_of, coefficients, matrices, direction, damping, factor,
-    forward, backward, positive, out,
-):  # fmt: skip
+def rotate(p, table, direction, transforms, factor, positive, out):
     """out[row] = factor · F⁻¹ e^{−imφ} M(|∇B|) e^{imφ} F p[row] for every row.
 
-    p, out (n_rows, n_alpha); rows (4 n_quads,), four of the same matrix together;
-    matrix_of (n_quads,); coefficients (n_quads, Q, 4); matrices
-    (Q, n_intervals, M, M), mode in, mode out, M = n_alpha/2; direction (2, n_rows);
-    damping: factor of the Nyquist mode; factor (n_rows,); transforms (2, 2, H, H).
-    A row that appears twice must do so in one batch.
+    p, out (n_rows, n_alpha), which may be the same; table a `RotationTable`; direction
+    (2, n_rows); transforms: F and F⁻¹, each (2, 2, H, H); factor (n_rows,).
     """
+    rows, matrix_of, coefficients, matrices, damping = table
+    forward, backward = transforms
     n_alpha = p.shape[1]
     half = n_alpha // 2
     quarter = forward.shape[2]

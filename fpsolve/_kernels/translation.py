@@ -4,7 +4,7 @@ The weights are stored densely, `weights[t, k]` for tap `first + t` and angle k,
 that neighbouring angles are filtered together, without a gather. A filter makes four
 rows at a time: every weight is then read once for four results, which stay in
 registers until all taps are added. Rows and planes are addressed by where they begin
-in the flat array.
+in the flat array. Taps come as a pair (first, weights).
 """
 
 import numpy as np
@@ -118,13 +118,14 @@ def wrap_rows(lead, n2, rows):
 
 
 @njit(cache=True, parallel=True, fastmath={"contract"}, error_model="numpy")
-def translate(p, first1, weights1, first2, weights2, out):
+def translate(p, taps1, taps2, out):
     """out[i, j, k] = Σ_t Σ_u w1[t, k] w2[u, k] p[i − t, j − u, k], periodic.
 
     p, out (n1, n2, n_alpha); weights (n_taps, n_alpha). `out` must not overlap p.
     """
     n1, n2, n = p.shape
     flat = p.reshape(p.size)
+    (first1, weights1), (first2, weights2) = taps1, taps2
     n_taps1, n_taps2 = weights1.shape[0], weights2.shape[0]
     lead = max(first2 + n_taps2 - 1, 0)
     n_rows = lead + n2 + max(-first2, 0)
@@ -148,7 +149,7 @@ def clamp_flux(flux, donor):
 
 
 @njit(cache=True, fastmath={"contract"}, error_model="numpy")
-def transport_rows(row, lead, first_flux, fluxes, first_donor, donors, work, out):
+def transport_rows(row, lead, fluxes, donors, work, out):
     """out_j = D_j − (F_{j+½} − F_{j−½}) with F clamped to [0, D_j], periodic in j.
 
     row (., n_alpha) holds n2 rows from `lead` on and what taps read beside them;
@@ -158,10 +159,10 @@ def transport_rows(row, lead, first_flux, fluxes, first_donor, donors, work, out
     n_rows = row.shape[0]
     donor, flux = work[0], work[1]
     flat = row.reshape(row.size)
-    donor_rows = begins(lead, first_donor, donors.shape[0], n_rows, n)
-    filter_rows(flat, donor_rows, donors, donor)
-    flux_rows = begins(lead, first_flux, fluxes.shape[0], n_rows, n)
-    filter_rows(flat, flux_rows, fluxes, flux)
+    first, weights = donors
+    filter_rows(flat, begins(lead, first, weights.shape[0], n_rows, n), weights, donor)
+    first, weights = fluxes
+    filter_rows(flat, begins(lead, first, weights.shape[0], n_rows, n), weights, flux)
     clamp_flux(flux, donor)
     for j in range(n2):
         before = flux[(j - 1) % n2]
@@ -170,31 +171,29 @@ def transport_rows(row, lead, first_flux, fluxes, first_donor, donors, work, out
 
 
 @njit(cache=True, fastmath={"contract"}, error_model="numpy")
-def plane_fluxes(flat, i, first_flux, fluxes, first_donor, donors, n1, donor, flux):
+def plane_fluxes(flat, i, fluxes, donors, n1, donor, flux):
     """Donor cells of plane i and the clamped fluxes to plane i + 1; (n2, n_alpha)."""
     length = donor.size
-    donor_planes = begins(i, first_donor, donors.shape[0], n1, length)
-    filter_rows(flat, donor_planes, donors, donor)
-    flux_planes = begins(i, first_flux, fluxes.shape[0], n1, length)
-    filter_rows(flat, flux_planes, fluxes, flux)
+    first, weights = donors
+    filter_rows(flat, begins(i, first, weights.shape[0], n1, length), weights, donor)
+    first, weights = fluxes
+    filter_rows(flat, begins(i, first, weights.shape[0], n1, length), weights, flux)
     clamp_flux(flux, donor)
 
 
 @njit(cache=True, parallel=True, fastmath={"contract"}, error_model="numpy")
-def translate_positive(
-    p, first_flux1, fluxes1, first_donor1, donors1,
-    first_flux2, fluxes2, first_donor2, donors2, out,
-):  # fmt: skip
+def translate_positive(p, fluxes1, donors1, fluxes2, donors2, out):
     """The translation in flux form, direction by direction, every flux clamped.
 
-    p, out (n1, n2, n_alpha), p non-negative; flux and donor weights
+    p, out (n1, n2, n_alpha), p non-negative; fluxes and donors are taps, weights
     (n_taps, n_alpha). Keeps the sum and the sign of p.
     """
     n1, n2, n = p.shape
     flat = p.reshape(p.size)
-    last_flux = first_flux2 + fluxes2.shape[0] - 1
-    lead = max(last_flux, first_donor2 + donors2.shape[0] - 1, 0)
-    n_rows = lead + n2 + max(-min(first_flux2, first_donor2), 0)
+    last_flux = fluxes2[0] + fluxes2[1].shape[0] - 1
+    last_donor = donors2[0] + donors2[1].shape[0] - 1
+    lead = max(last_flux, last_donor, 0)
+    n_rows = lead + n2 + max(-min(fluxes2[0], donors2[0]), 0)
     n_chunks = (n1 + PLANES_PER_CHUNK - 1) // PLANES_PER_CHUNK
     for chunk in prange(n_chunks):
         start = chunk * PLANES_PER_CHUNK
@@ -202,19 +201,12 @@ def translate_positive(
         moved = np.empty((n_rows, n))
         planes = np.empty((2, n2, n))
         work = np.empty((2, n2, n))
-        plane_fluxes(
-            flat, start - 1, first_flux1, fluxes1, first_donor1, donors1, n1,
-            donor, planes[0],
-        )  # fmt: skip
+        plane_fluxes(flat, start - 1, fluxes1, donors1, n1, donor, planes[0])
         for i in range(start, min(start + PLANES_PER_CHUNK, n1)):
             before, flux = planes[(i - start) % 2], planes[(i - start + 1) % 2]
-            plane_fluxes(
-                flat, i, first_flux1, fluxes1, first_donor1, donors1, n1, donor, flux
-            )
+            plane_fluxes(flat, i, fluxes1, donors1, n1, donor, flux)
             for j in range(n2):
                 for k in range(n):
                     moved[lead + j, k] = donor[j, k] - (flux[j, k] - before[j, k])
             wrap_rows(lead, n2, moved)
-            transport_rows(
-                moved, lead, first_flux2, fluxes2, first_donor2, donors2, work, out[i]
-            )
+            transport_rows(moved, lead, fluxes2, donors2, work, out[i])

@@ -22,14 +22,16 @@ def eliminate(pivots, off, row):
 
 
 @njit(cache=True, parallel=True, fastmath={"contract"}, error_model="numpy")
-def solve_rows(p, centre, side, pivots, off, gamma, response, scale, out):
+def solve_rows(p, numbers, pivots, response, out):
     """out = circ(off, a, off)⁻¹ circ(side, centre, side) p along the last axis.
 
-    p, out (n1, n2, n_alpha), `out` may be p; pivots (n_alpha,) inverse pivots of the
-    corrected tridiagonal matrix; response (n_alpha,) its solution for the corner
-    vector; gamma the corner shift; scale = 1/(1 + vᵀ response).
+    p, out (n1, n2, n_alpha), `out` may be p; numbers (centre, side, off, gamma,
+    scale), gamma the corner shift, scale = 1/(1 + vᵀ response); pivots (n_alpha,)
+    inverse pivots of the corrected tridiagonal matrix; response (n_alpha,) its
+    solution for the corner vector.
     """
     n1, n2, n = p.shape
+    centre, side, off, gamma, scale = numbers
     for i in prange(n1):
         row = np.empty(n)
         for j in range(n2):

@@ -108,10 +108,9 @@ class Integrator(NamedTuple):
         if potential is None:
             self._take_staged(state, path, step, shifts, trace)
             return
-        kernels.advance_paths(
-            path, step, self.key, self.ds, self.noise_scale, potential, shifts,
-            METHODS[self.method], trace, state,
-        )  # fmt: skip
+        noise = kernels.Noise(path, step, self.key, self.noise_scale)
+        method = METHODS[self.method]
+        kernels.advance_paths(noise, self.ds, potential, shifts, method, trace, state)
 
     def _take_staged(
         self, state: Array, path: int, step: int, shifts: Array, trace: Array

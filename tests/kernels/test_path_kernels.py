@@ -67,7 +67,10 @@ def cases():
         "load_block": [(state, 0, n, w)],
         "store_block": [(w, 0, n, state)],
         "advance_paths": [
-            (7, 2, KEY, 0.2, 0.4, potential, shifts, method, NO_TRACE, state)
+            (
+                kernels.Noise(7, 2, KEY, 0.4), 0.2, potential, shifts, method,
+                NO_TRACE, state,
+            )
             for potential in POTENTIALS
             for method in (kernels.SPLITTING, kernels.EULER_MARUYAMA, kernels.HEUN)
         ],
@@ -121,7 +124,8 @@ def test_paths_do_not_depend_on_the_number_of_threads(potential, method, on_thre
 
     def run():
         state = random_state(5000)
-        arguments = (0, 0, KEY, 0.1, 0.3, potential, shifts, method, NO_TRACE)
+        noise = kernels.Noise(0, 0, KEY, 0.3)
+        arguments = (noise, 0.1, potential, shifts, method, NO_TRACE)
         kernels.advance_paths(*arguments, state)
         return state
 
@@ -135,7 +139,8 @@ def test_a_position_that_is_not_finite_stays_so_and_spoils_no_other_path(value, 
     good, spoiled = random_state(70), random_state(70)
     spoiled[0, 13] = value
     for state in (good, spoiled):
-        arguments = (0, 0, KEY, 0.1, 0.3, QUADRATIC, shifts, method, NO_TRACE)
+        noise = kernels.Noise(0, 0, KEY, 0.3)
+        arguments = (noise, 0.1, QUADRATIC, shifts, method, NO_TRACE)
         kernels.advance_paths(*arguments, state)
     assert not np.isfinite(spoiled[:, 13]).all()
     others = np.arange(70) != 13
@@ -145,7 +150,7 @@ def test_a_position_that_is_not_finite_stays_so_and_spoils_no_other_path(value, 
 def test_the_trace_holds_the_state_after_every_step():
     shifts = np.full((9, 2, 2), 0.01)
     whole, trace = random_state(70), np.zeros((9, 5, 70))
-    arguments = (3, 5, KEY, 0.1, 0.3, QUADRATIC)
+    arguments = (kernels.Noise(3, 5, KEY, 0.3), 0.1, QUADRATIC)
     kernels.advance_paths(*arguments, shifts, 0, trace, whole)
     for n_steps in range(1, 10):
         state = random_state(70)

@@ -124,7 +124,7 @@ def test_the_compiled_operator_equals_its_source_and_the_sparse_matrix():
     source = np.zeros_like(image)
     numbers = ForwardOperator(BELT).numbers
     ladder.apply_ladder.py_func(
-        h.values, limits, *numbers, 1.0, 0.0, source, 0.0, 0.0, np.zeros_like(image)
+        h.values, limits, numbers, (1.0, 0.0, 0.0), source, 0.0, np.zeros_like(image)
     )
     # Rounding of sums of ten terms of size 100.
     np.testing.assert_allclose(image, source, rtol=0, atol=1e-12)

@@ -3,6 +3,7 @@
 import numpy as np
 
 from fpsolve._kernels import functionals
+from fpsolve._kernels.characteristics import Displacement
 from fpsolve.density.schemes.diffusion import ImplicitDiffusion
 from fpsolve.density.schemes.rotation import RotationDiffusion
 from fpsolve.density.schemes.stencils import flux_taps, shift_taps
@@ -52,8 +53,9 @@ class Arguments:
         plane = self.rng.normal(size=(2, self.n1, self.n2))
         line = self.rng.normal(size=(6, self.n))
         return (
-            self.p, self.feet, growth, line[0], line[1], plane[0], plane[1], line[2],
-            line[3], 0.3, line[4], line[5], points, limited, True, self.out(),
+            self.p, self.feet, growth,
+            Displacement(*line[:2], *plane, *line[2:4], 0.3, *line[4:]),
+            points, limited, True, self.out(),
         )  # fmt: skip
 
     def sums_kernel(self, logarithms):
@@ -68,9 +70,12 @@ class Arguments:
         table = turn.table(0.1)
         weights = self.rng.uniform(size=(table.matrix_of.size, n_nodes, 4))
         return (
-            self.p.reshape(-1, self.n), table.rows, table.matrix_of, weights,
-            np.repeat(table.matrices, n_nodes, axis=0), turn.direction, table.damping,
-            turn.reaction(0.0, 0.1), *turn.transforms, positive,
+            self.p.reshape(-1, self.n),
+            table._replace(
+                coefficients=weights,
+                matrices=np.repeat(table.matrices, n_nodes, axis=0),
+            ),
+            turn.direction, turn.transforms, turn.reaction(0.0, 0.1), positive,
             self.out().reshape(-1, self.n),
         )  # fmt: skip
 
@@ -167,16 +172,15 @@ class Arguments:
             )],
             "begins": [(1, -2, 6, 5, 10), (7, 3, 4, 7, 8)],
             "wrap_rows": [(lead, self.n2, padded)],
-            "translate": [(p, *self.taps[0], *self.taps[1], self.out())],
+            "translate": [(p, *self.taps, self.out())],
             "clamp_flux": [(row - 0.5, p[2] - 0.3)],
             "plane_fluxes": [(
-                p.ravel(), 1, *flux, *donor, self.n1, plane.copy(), plane.copy(),
+                p.ravel(), 1, flux, donor, self.n1, plane.copy(), plane.copy(),
             )],
-            "transport_rows": [(padded, lead, *flux, *donor, work, plane)],
+            "transport_rows": [(padded, lead, flux, donor, work, plane)],
             "translate_positive": [(
-                p, *self.fluxes[0][0], *self.fluxes[0][1], *self.fluxes[1][0],
-                *self.fluxes[1][1], self.out(),
+                p, *self.fluxes[0], *self.fluxes[1], self.out(),
             )],
-            "eliminate": [(elimination.pivots, elimination.off, row[0].copy())],
+            "eliminate": [(elimination.pivots, elimination.numbers[2], row[0].copy())],
             "solve_rows": [(p, *elimination, self.out())],
         }  # fmt: skip

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fpsolve._kernels.characteristics import (
+    Displacement,
     blend,
     interpolate_at_feet,
     interpolate_at_perturbed_feet,
@@ -153,12 +153,12 @@ class AdjustedAdvection:
         reach = self.perturbation * ds**2
         velocity1, velocity2 = reach * (cosine - speed1), reach * (sine - speed2)
         weighted = 0.0 if self.form.weight is None else 1.0
-        kernel: Any = interpolate_at_perturbed_feet
-        kernel(
-            state.values, feet.places, feet.growth,
-            velocity1 / d1, velocity2 / d2,
-            *self.force, cosine, sine, reach / d_alpha,
+        displacement = Displacement(
+            velocity1 / d1, velocity2 / d2, *self.force, cosine, sine, reach / d_alpha,
             weighted * velocity1, weighted * velocity2,
+        )  # fmt: skip
+        interpolate_at_perturbed_feet(
+            state.values, feet.places, feet.growth, displacement,
             self.points, self.limited, upper, spare,
         )  # fmt: skip
         return spare

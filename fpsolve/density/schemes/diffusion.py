@@ -20,13 +20,9 @@ _KEPT = 4
 class Elimination(NamedTuple):
     """Factors of circ(off, a, off)⁻¹ circ(side, centre, side); see the kernel."""
 
-    centre: float
-    side: float
+    numbers: tuple[float, float, float, float, float]
     pivots: Array
-    off: float
-    gamma: float
     response: Array
-    scale: float
 
 
 class ImplicitDiffusion:
@@ -101,7 +97,7 @@ def eliminate_circulant(off: float, side: float, n: int) -> Elimination:
     corner[0], corner[-1] = gamma, off
     response = solve_tridiagonal(main, off, corner)
     scale = 1.0 / (1.0 + response[0] + off / gamma * response[-1])
-    return Elimination(centre, side, pivots, off, gamma, response, float(scale))
+    return Elimination((centre, side, off, gamma, float(scale)), pivots, response)
 
 
 def solve_tridiagonal(main: Array, off: float, right: Array) -> Array:

@@ -5,12 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve._kernels.rotation import rotate
-from fpsolve.density.schemes.rotation_table import (
-    LARGEST_TABLE,
-    RotationTable,
-    rotation_table,
-)
+from fpsolve._kernels.rotation import RotationTable, rotate
+from fpsolve.density.schemes.rotation_table import LARGEST_TABLE, rotation_table
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.model.laydown import LayDownModel
 from fpsolve.model.potentials.at_points import gradient_at
@@ -66,17 +62,12 @@ class RotationDiffusion:
 
     def __call__(self, p: Array, s: float, ds: float, out: Array) -> None:
         """Advance p from s to s + ds into `out`."""
-        table = self.table(ds)
         rotate(
             p.reshape(-1, p.shape[2]),
-            table.rows,
-            table.matrix_of,
-            table.coefficients,
-            table.matrices,
+            self.table(ds),
             self.direction,
-            table.damping,
+            self.transforms,
             self.reaction(s, ds),
-            *self.transforms,
             self.positive,
             out.reshape(-1, p.shape[2]),
         )

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
 from fpsolve._kernels.lanes import LANES
 from fpsolve._kernels.moebius import first_of_group, rotation_matrices
-from fpsolve._kernels.rotation import QUADS_PER_BATCH
+from fpsolve._kernels.rotation import QUADS_PER_BATCH, RotationTable
 
 Array = NDArray[np.float64]
 
@@ -23,37 +21,6 @@ LARGEST_TABLE = 3.0
 # Chebyshev nodes per interval of ψ = arccos tanh(|∇B| ds/4), in which the entries
 # are trigonometric polynomials of degree below n_alpha; see `interval_width`.
 NODES = 8
-
-
-@dataclass(frozen=True)
-class RotationTable:
-    """Rows in quads of equal |∇B|, and M(|∇B|) = R½ D R½ for them.
-
-    Attributes
-    ----------
-    rows : ndarray of int, shape (4 n_quads,)
-        Row numbers in the order of |∇B|; four at a time share a matrix. Where there
-        are not four, the last is repeated.
-    matrix_of : ndarray of int, shape (n_quads,)
-        Which matrix, or which interval of interpolation.
-    coefficients : ndarray, shape (n_quads, Q, 4)
-        Interpolation weights of the rows of a quad; Q = 1 for exact matrices.
-    matrices : ndarray, shape (Q, n_intervals, M, M)
-        Mode in, mode out; M = n_alpha/2.
-    damping : float
-        Factor of the Nyquist mode.
-    """
-
-    rows: NDArray[np.int64]
-    matrix_of: NDArray[np.int64]
-    coefficients: Array
-    matrices: Array
-    damping: float
-
-    @property
-    def nbytes(self) -> int:
-        """Memory of the matrices, the largest part."""
-        return self.matrices.nbytes
 
 
 def rotation_table(

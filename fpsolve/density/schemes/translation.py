@@ -61,9 +61,8 @@ class Translation:
     def __call__(self, p: Array, s: float, ds: float, out: Array) -> None:
         """Advance p from s to s + ds into `out`."""
         taps = self._remembered_taps(s, ds)
-        arguments = [item for pair in taps for item in pair]
         kernel: Any = translate_positive if self.positive else translate
-        kernel(p, *arguments, out)
+        kernel(p, *taps, out)
 
     def _remembered_taps(self, s: float, ds: float) -> tuple[Taps, ...]:
         # Rounding of s must not defeat the memory for belts of constant speed.

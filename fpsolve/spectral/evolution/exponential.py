@@ -112,8 +112,9 @@ class ForwardOperator:
         for n in range(2, coefficients.size):
             work.applied(start.n_coefficients)
             apply_ladder(
-                newer, start.limits, *self.numbers, 2 * gain, -2 * gain * centre,
-                older, -sign, coefficients[n], total.values,
+                newer, start.limits, self.numbers,
+                (2 * gain, -2 * gain * centre, -sign), older,
+                coefficients[n], total.values,
             )  # fmt: skip
             older, newer = newer, older
             # While the terms still grow, small ones say nothing of those to come.
@@ -133,9 +134,8 @@ class ForwardOperator:
         keep: float,
     ) -> None:
         nothing = np.zeros_like(c)
-        apply_ladder(
-            c, limits, *self.numbers, gain, -gain * centre, out, keep, 0.0, nothing
-        )
+        recurrence = gain, -gain * centre, keep
+        apply_ladder(c, limits, self.numbers, recurrence, out, 0.0, nothing)
 
     def __call__(self, h: Expansion) -> Expansion:
         """L* h within the limits of h."""
