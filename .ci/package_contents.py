@@ -51,7 +51,9 @@ def files_in(folder: str) -> Iterator[str]:
     """Files of the checkout under a folder, without what running it leaves there."""
     for path in (ROOT / folder).rglob("*"):
         parts = path.relative_to(ROOT).parts
-        if path.is_file() and not set(parts) & set(MADE):
+        # The map of the package is drawn when the pages are built.
+        made = set(parts) & set(MADE) or parts[:2] == ("docs", "house")
+        if path.is_file() and not made:
             yield "/".join(parts)
 
 
