@@ -10,11 +10,11 @@ from collections.abc import Callable, Iterable
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+
+from fpsolve._support.arrays import Array
 
 __all__ = ["SAMPLED", "digest_of", "digest_of_answers", "plain"]
 
-Array = NDArray[np.float64]
 
 # Key, in a description, of the digest of what a user's own code computes.
 SAMPLED = "sampled"

@@ -7,7 +7,6 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fpsolve.density.solution import Solution
 from fpsolve.evolution.richardson import extrapolated_series, gain_of
@@ -17,7 +16,6 @@ from fpsolve.grids import diagnostics
 
 __all__ = ["extrapolated"]
 
-Array = NDArray[np.float64]
 
 # Beyond these the angle forgets its direction, or the nozzle turns, within a step: the
 # expansion in ds does not hold, and neither does the gain of an order.

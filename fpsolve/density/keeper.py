@@ -7,13 +7,12 @@ from dataclasses import dataclass, fields
 from typing import Any, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fpsolve._support.arrays import Array
 from fpsolve.density.schemes.form import State
 
 __all__ = ["MemoryKeeper", "Snapshot", "Take", "fields_of"]
 
-Array = NDArray[np.float64]
 
 # Scratch of the next step, and nothing before it.
 _NOT_KEPT = ("work", "scratch")

@@ -8,8 +8,8 @@ from dataclasses import fields
 from typing import Any, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fpsolve._support.arrays import Array
 from fpsolve._support.checks import check_call, shown
 from fpsolve.density.solution import Solution
 from fpsolve.errors import ObservationError
@@ -20,7 +20,6 @@ from fpsolve.model.identity.digests import digest_or_none
 
 __all__ = ["Observe", "described_observed", "observed_series"]
 
-Array = NDArray[np.float64]
 # A name, and what gives a number for a density on a grid.
 Observe: TypeAlias = Mapping[str, Callable[[Array, PhaseSpaceGrid], Any]]
 

@@ -9,8 +9,8 @@ from collections.abc import Mapping, Sequence
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fpsolve._support.arrays import Array
 from fpsolve.evolution.series import SERIES, Series
 from fpsolve.grids import diagnostics
 from fpsolve.grids.circulation import Circulation, obeys_circulation_law, remaining
@@ -19,8 +19,6 @@ from fpsolve.grids.row_sums import SMALLEST, RowFunctionals, inverse_of
 from fpsolve.model.laydown import LayDownModel
 from fpsolve.model.potentials.at_points import value_at
 from fpsolve.model.potentials.potential import Potential
-
-Array = NDArray[np.float64]
 
 # A share of H that matters: a warning tells where B beyond 690 is not counted.
 _UNCOUNTED = 1e-3

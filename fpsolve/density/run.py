@@ -7,8 +7,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fpsolve._support.arrays import Array
 from fpsolve._support.progress import ProgressCallback
 from fpsolve._support.provenance import Stopwatch
 from fpsolve.density.keeper import MemoryKeeper, Snapshot, fields_of
@@ -26,8 +26,6 @@ if TYPE_CHECKING:
     from fpsolve.density.checkpoints.keeper import CheckpointKeeper
 
 __all__ = ["Run"]
-
-Array = NDArray[np.float64]
 
 
 class Run:

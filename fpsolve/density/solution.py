@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fpsolve._support.arrays import Array
 from fpsolve._support.netcdf import write_dataset
 from fpsolve._support.streaming import Streamed
 from fpsolve.density.error_laws import mean_square_force, slope_at_origin
@@ -25,7 +25,6 @@ from fpsolve.model.laydown import LayDownModel
 
 __all__ = ["Solution"]
 
-Array = NDArray[np.float64]
 
 # Error of a decay rate relative to it, over (A⁴ + ⟨|∇B|²⟩) ds²: 1/48 at most for
 # drift_kick, quadratic, linear and quartic B, 0.3 ≤ A ≤ 5; and what others have more.

@@ -8,10 +8,8 @@ from contextlib import AbstractContextManager, nullcontext
 from functools import partial
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-import numpy as np
-from numpy.typing import NDArray
-
 from fpsolve._kernels.threads import threads_worth_their_wait
+from fpsolve._support.arrays import Array
 from fpsolve._support.blas import one_blas_thread
 from fpsolve._support.checks import check_flag
 from fpsolve._support.memory import check_memory, required_memory
@@ -35,7 +33,6 @@ if TYPE_CHECKING:
 
 __all__ = ["solve"]
 
-Array = NDArray[np.float64]
 # Of the name of a pass and its schedule.
 Keepers: TypeAlias = Callable[[str, Schedule], "MemoryKeeper | CheckpointKeeper"]
 

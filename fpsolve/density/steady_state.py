@@ -7,9 +7,7 @@ import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
-import numpy as np
-from numpy.typing import NDArray
-
+from fpsolve._support.arrays import Array
 from fpsolve._support.blas import one_blas_thread
 from fpsolve._support.checks import check_flag, check_tolerance
 from fpsolve.density.schemes import drift_kick
@@ -40,7 +38,6 @@ from fpsolve.model.laydown import LayDownModel
 
 __all__ = ["SteadyState", "steady_state"]
 
-Array = NDArray[np.float64]
 
 # High order costs next to nothing beside the angle step.
 INTERPOLATION_ORDER = 12

@@ -9,13 +9,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve._support.arrays import check_numbers
+from fpsolve._support.arrays import Array, check_numbers
 from fpsolve._support.checks import shown
 from fpsolve.evolution.matrix_pencil import slowest_exponents
 
 __all__ = ["DecayRate", "fit_decay"]
 
-Array = NDArray[np.float64]
 
 # Below this a relative entropy on a grid is rounding noise.
 NOISE_LEVEL = 1e-14

@@ -6,15 +6,13 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fpsolve._support.arrays import Array
 from fpsolve.evolution.decay import DecayRate, fit_decay
 from fpsolve.evolution.saved import Saved
 from fpsolve.evolution.schedule import saved_index
 
 __all__ = ["Evolution", "WithSeries"]
-
-Array = NDArray[np.float64]
 
 
 class WithSeries:

@@ -9,11 +9,11 @@ digits, so that they tell more terms than one.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
+
+from fpsolve._support.arrays import Array
 
 __all__ = ["slowest_exponents"]
 
-Array = NDArray[np.float64]
 
 # Values of the resampled series: enough for ten terms, little to compute with.
 N_VALUES = 61

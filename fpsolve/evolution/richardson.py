@@ -8,7 +8,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
+
+from fpsolve._support.arrays import Array
 
 __all__ = [
     "extrapolated",
@@ -17,8 +18,6 @@ __all__ = [
     "largest_nearby",
     "weights_of",
 ]
-
-Array = NDArray[np.float64]
 
 
 def gain_of(order: int) -> float:

@@ -10,13 +10,11 @@ from typing import Any
 
 import numpy as np
 from numpy.lib.mixins import NDArrayOperatorsMixin
-from numpy.typing import NDArray
 
+from fpsolve._support.arrays import Array
 from fpsolve.errors import FileFormatError
 
 __all__ = ["CombinedDensities", "LazyDensities", "StoredDensities"]
-
-Array = NDArray[np.float64]
 
 
 class LazyDensities(NDArrayOperatorsMixin):

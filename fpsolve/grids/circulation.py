@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.grids.row_sums import RowFunctionals
@@ -14,8 +13,6 @@ from fpsolve.model.potentials.at_points import value_at
 from fpsolve.model.potentials.potential import Potential
 
 __all__ = ["Circulation", "obeys_circulation_law", "remaining"]
-
-Array = NDArray[np.float64]
 
 
 def obeys_circulation_law(model: LayDownModel) -> bool:

@@ -6,9 +6,8 @@ import math
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
-from fpsolve._support.arrays import check_finite_numbers, check_numbers
+from fpsolve._support.arrays import Array, check_finite_numbers, check_numbers
 from fpsolve._support.checks import check_non_negative, check_one_of
 from fpsolve.errors import GridMismatchError
 from fpsolve.grids.phase_space import PhaseSpaceGrid, check_grid
@@ -26,7 +25,6 @@ __all__ = [
     "relative_entropy",
 ]
 
-Array = NDArray[np.float64]
 
 CELLS_PER_SLAB = 32768
 # Staggered weights of order eight, from the nearest pair outward.

@@ -5,12 +5,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fpsolve._kernels.functionals import N_FUNCTIONALS, row_functionals
+from fpsolve._support.arrays import Array
 from fpsolve.grids.phase_space import PhaseSpaceGrid
-
-Array = NDArray[np.float64]
 
 # Reference values below this carry no mass; they only have to be divisible.
 SMALLEST = 1e-300

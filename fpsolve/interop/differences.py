@@ -10,8 +10,8 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fpsolve._support.arrays import Array
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.grids.plane import PlaneGrid
 from fpsolve.model.laydown import LayDownModel
@@ -25,7 +25,6 @@ __all__ = [
     "plane_rate_bound",
 ]
 
-Array = NDArray[np.float64]
 
 # e^{−B} may fall by e^{−600} from the centre of a cell to its face, not by more.
 MOST_STEEP = 600.0

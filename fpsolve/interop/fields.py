@@ -7,14 +7,14 @@ from typing import Any
 
 import numpy as np
 import pde
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from fpsolve._support.arrays import Array
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.grids.plane import PlaneGrid
 
 __all__ = ["cartesian_grid", "from_pde_field", "own_grid", "to_pde_field"]
 
-Array = NDArray[np.float64]
 
 # Bounds that were computed rather than typed may differ by rounding.
 ROUNDING = 1e-12

@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-import numpy as np
 import pde
-from numpy.typing import NDArray
 
+from fpsolve._support.arrays import Array
 from fpsolve._support.checks import check_kind
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.grids.plane import PlaneGrid
@@ -24,7 +23,6 @@ from fpsolve.model.laydown import LayDownModel
 
 __all__ = ["FokkerPlanckPDE", "HydrodynamicPDE", "expect_grid"]
 
-Array = NDArray[np.float64]
 Rate = Callable[[Array, float], Array]
 
 # The half disc of this radius left of the imaginary axis is stable for the classical

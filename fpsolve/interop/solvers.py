@@ -7,9 +7,9 @@ from collections.abc import Callable
 from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 from pde.solvers import SolverBase
 
+from fpsolve._support.arrays import Array
 from fpsolve._support.checks import check_positive
 from fpsolve.density.recorder import Recorder
 from fpsolve.density.schemes.drift_kick import DriftKick
@@ -21,8 +21,6 @@ from fpsolve.interop.fields import from_pde_field
 from fpsolve.interop.pypde import FokkerPlanckPDE, expect_grid
 
 __all__ = ["DriftKickSolver", "SchemeSolverBase", "SemiLagrangianSolver"]
-
-Array = NDArray[np.float64]
 
 
 class SchemeSolverBase(SolverBase):  # type: ignore[misc]

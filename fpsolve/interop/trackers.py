@@ -6,10 +6,10 @@ import os
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 from pde.trackers import DataTracker
 from pde.visualization.movies import Movie
 
+from fpsolve._support.arrays import Array
 from fpsolve._support.checks import check_integer, check_path, check_positive
 from fpsolve.grids import diagnostics
 from fpsolve.grids.phase_space import PhaseSpaceGrid
@@ -21,8 +21,6 @@ if TYPE_CHECKING:
     from matplotlib.animation import PillowWriter
 
 __all__ = ["GifMovie", "entropy_tracker", "relative_entropy"]
-
-Array = NDArray[np.float64]
 
 
 def relative_entropy(field: Any, model: LayDownModel) -> float:

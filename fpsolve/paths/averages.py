@@ -6,15 +6,13 @@ from collections.abc import Callable, Iterable, Sequence
 from typing import Any, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
-from fpsolve._support.arrays import check_answers
+from fpsolve._support.arrays import Array, check_answers
 from fpsolve._support.checks import check_call
 from fpsolve.paths.ensemble import Ensemble, angle_of
 
 __all__ = ["Observable", "observed", "time_averages"]
 
-Array = NDArray[np.float64]
 Observable: TypeAlias = Callable[[Array, Array, Array], Any]
 Legs: TypeAlias = Iterable[tuple[int, Array]]
 Trace: TypeAlias = Callable[[int, int], Legs]

@@ -9,13 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fpsolve._kernels.paths import N_STATE
+from fpsolve._support.arrays import Array
 from fpsolve.paths.ensemble import START_BLOCK, Ensemble, angle_of
 from fpsolve.paths.histogram import count_paths
 from fpsolve.paths.moments import N_SUMS, moment_sums
 
 __all__ = ["Batch", "BatchRun", "batches_of", "run_batch"]
 
-Array = NDArray[np.float64]
 
 # Paths worked on at a time; sums over paths are rounded batch by batch, so that it
 # must not change either.

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fpsolve._support.arrays import Array
 from fpsolve.errors import FpsolveError
 from fpsolve.evolution.schedule import Schedule
 from fpsolve.grids.phase_space import PhaseSpaceGrid
@@ -16,7 +16,6 @@ from fpsolve.paths.randomness import noise_key, start_generator
 
 __all__ = ["START_BLOCK", "Ensemble", "GivenStart", "angle_of", "state_of"]
 
-Array = NDArray[np.float64]
 
 # Paths whose starts come from one generator; part of the meaning of a seed, so that it
 # must not change.

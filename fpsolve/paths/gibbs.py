@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fpsolve._support.arrays import Array
 from fpsolve.model.potentials.linear import LinearPotential
 from fpsolve.model.potentials.potential import Potential
 from fpsolve.model.potentials.power import PowerPotential
@@ -13,7 +13,6 @@ from fpsolve.paths.patches import PatchRejection
 
 __all__ = ["GibbsSampler"]
 
-Array = NDArray[np.float64]
 
 # Share of exp(-B) beyond every place that is sampled which no sample can show.
 NEGLIGIBLE = 1e-10

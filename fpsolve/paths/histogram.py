@@ -7,12 +7,12 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from fpsolve._support.arrays import Array
 from fpsolve.grids import diagnostics
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 
 __all__ = ["Histogram", "count_paths", "wrapped"]
 
-Array = NDArray[np.float64]
 TURN = 2.0 * np.pi
 
 

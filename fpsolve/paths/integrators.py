@@ -13,16 +13,15 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fpsolve._kernels import paths as kernels
+from fpsolve._support.arrays import Array
 from fpsolve.errors import NonFinitePathError
 from fpsolve.model.laydown import LayDownModel
 from fpsolve.paths.forcing import compiled_potential, half_step_shifts
 
 __all__ = ["LARGEST_TURN", "METHODS", "Integrator"]
 
-Array = NDArray[np.float64]
 Gradient = Callable[[Array], Array]
 
 METHODS = {

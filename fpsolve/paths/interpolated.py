@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import ndimage
 
+from fpsolve._support.arrays import Array
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.paths.rejection import CellRejection
 from fpsolve.paths.spline_bounds import (
@@ -17,7 +17,6 @@ from fpsolve.paths.spline_bounds import (
 
 __all__ = ["InterpolatedDensity"]
 
-Array = NDArray[np.float64]
 
 # Largest share of negative mass in what is called a density.
 MOST_NEGATIVE = 1e-2

@@ -6,8 +6,9 @@ from dataclasses import dataclass, field
 from typing import Any, ClassVar, Protocol
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from fpsolve._support.arrays import Array
 from fpsolve._support.checks import (
     check_finite,
     check_kind,
@@ -23,7 +24,6 @@ from fpsolve.paths.interpolated import InterpolatedDensity
 
 __all__ = ["DensityLaw", "EquilibriumLaw", "GaussianLaw", "Law", "PointLaw"]
 
-Array = NDArray[np.float64]
 Sample = tuple[Array, Array]
 TURN = 2.0 * np.pi
 

@@ -10,8 +10,8 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fpsolve._support.arrays import Array
 from fpsolve._support.labels import check_complete, labels, to_json
 from fpsolve.evolution.layout import (
     Attribute,
@@ -35,7 +35,6 @@ if TYPE_CHECKING:
 
 __all__ = ["PATHS"]
 
-Array = NDArray[np.float64]
 
 _CELLS = tuple(f"cell_{axis}" for axis in PhaseSpaceGrid.axes)
 # The parts of a state: name, its place in the array of states, long name.

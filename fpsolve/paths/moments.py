@@ -6,13 +6,12 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fpsolve._kernels.paths import LANES, N_POWERS, N_PRODUCTS, sum_powers
+from fpsolve._support.arrays import Array
 
 __all__ = ["N_SUMS", "Moments", "moment_sums"]
 
-Array = NDArray[np.float64]
 
 # Powers (i, j) of ξ1 and ξ2 that are summed, then cos, sin and their squares.
 POWERS = [(i, total - i) for total in range(N_POWERS) for i in range(total, -1, -1)]

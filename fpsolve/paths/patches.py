@@ -7,13 +7,13 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
+from fpsolve._support.arrays import Array
 from fpsolve.model.potentials.partition import Normalisation
 from fpsolve.model.potentials.quadrature import lowest_nearby, node_values, rules_for
 from fpsolve.paths.rejection import drawn
 
 __all__ = ["PatchRejection"]
 
-Array = NDArray[np.float64]
 
 # Around a node B falls by no more than its differences to the neighbours say, where it
 # is convex or concave; the margin is for places where it turns from one to the other.

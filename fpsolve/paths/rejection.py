@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
+
+from fpsolve._support.arrays import Array
 
 __all__ = ["CellRejection", "drawn"]
 
-Array = NDArray[np.float64]
 
 # Points along each side of a cell at which the density is bounded, and what is added
 # to the largest of them: between neighbours a resolved density rises by far less.

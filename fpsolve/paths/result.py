@@ -11,6 +11,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from fpsolve._support.arrays import Array
 from fpsolve._support.checks import check_integer
 from fpsolve.evolution.call import Call
 from fpsolve.evolution.saved import Saved
@@ -25,8 +26,6 @@ from fpsolve.paths.runner import completed, going_on
 from fpsolve.paths.trajectory import Trajectory, traced, trajectory
 
 __all__ = ["Paths"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -13,8 +13,8 @@ from functools import partial
 from typing import Any, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fpsolve._support.arrays import Array
 from fpsolve._support.checks import check_real
 from fpsolve._support.memory import OVERHEAD, check_memory
 from fpsolve._support.progress import ProgressCallback, reporting
@@ -30,7 +30,6 @@ from fpsolve.paths.integrators import LARGEST_TURN
 
 __all__ = ["completed", "going_on", "required_memory", "stepwise"]
 
-Array = NDArray[np.float64]
 # What makes a result of an ensemble, its batches and their provenance.
 Gather: TypeAlias = Callable[[Ensemble, list[Batch], dict[str, Any]], Any]
 NOTHING = np.zeros(0, dtype=np.int64)

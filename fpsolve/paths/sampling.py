@@ -6,7 +6,6 @@ from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fpsolve._support.arrays import check_numbers
 from fpsolve._support.checks import (
@@ -29,7 +28,6 @@ from fpsolve.paths.runner import completed, required_memory, stepwise
 
 __all__ = ["sample_paths"]
 
-Array = NDArray[np.float64]
 
 # Laws that draw from the generator alone.
 KNOWN = (PointLaw, GaussianLaw, EquilibriumLaw, DensityLaw, GivenStart)

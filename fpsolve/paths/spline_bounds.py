@@ -18,9 +18,10 @@ from numpy.typing import NDArray
 from scipy import ndimage
 from scipy.interpolate import BSpline
 
+from fpsolve._support.arrays import Array
+
 __all__ = ["SPLINE_ORDER", "bounded_by", "cell_averages", "negative_share"]
 
-Array = NDArray[np.float64]
 
 SPLINE_ORDER = 5
 # Coefficients along one axis on which the spline on a cell depends.

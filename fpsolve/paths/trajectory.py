@@ -7,15 +7,14 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fpsolve._kernels.paths import N_STATE
+from fpsolve._support.arrays import Array
 from fpsolve.model.curves.curve import Curve
 from fpsolve.paths.ensemble import Ensemble, angle_of
 
 __all__ = ["Trajectory", "traced", "trajectory"]
 
-Array = NDArray[np.float64]
 
 # Steps whose states are held at a time.
 LEG = 512

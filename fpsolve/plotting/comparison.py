@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from fpsolve._support.arrays import Array
 from fpsolve._support.checks import check_kind, told_apart
 from fpsolve.evolution.schedule import index_of
 from fpsolve.plotting.angle import show_turn
@@ -21,7 +22,6 @@ if TYPE_CHECKING:
 
 __all__ = ["plot_cross_check"]
 
-Array = NDArray[np.float64]
 
 _LABELS = {"xi1": r"$\xi_1$", "xi2": r"$\xi_2$", "alpha": r"$\alpha$"}
 _MOST_ROWS = 4

@@ -6,8 +6,8 @@ from functools import reduce
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fpsolve._support.arrays import Array
 from fpsolve._support.checks import check_kind
 from fpsolve.plotting.logarithmic import noise_ticks
 from fpsolve.plotting.selection import evenly
@@ -22,7 +22,6 @@ if TYPE_CHECKING:
 
 __all__ = ["plot_comparison"]
 
-Array = NDArray[np.float64]
 
 # What a line is drawn against, the first that there is.
 _AXES = {

@@ -6,8 +6,8 @@ from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fpsolve._support.arrays import Array
 from fpsolve.plotting.style import DENSITY_MAP, show_frame
 
 if TYPE_CHECKING:
@@ -33,7 +33,6 @@ __all__ = [
     "visible_region",
 ]
 
-Array = NDArray[np.float64]
 
 # Maps in a row, at most.
 N_MAPS = 4

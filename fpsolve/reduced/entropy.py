@@ -6,11 +6,11 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+
+from fpsolve._support.arrays import Array
 
 __all__ = ["Exchange", "relative_entropy_of"]
 
-Array = NDArray[np.float64]
 
 # Masses below this carry nothing; they only have to have a logarithm.
 SMALLEST = 1e-300

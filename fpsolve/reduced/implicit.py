@@ -5,11 +5,10 @@ from __future__ import annotations
 from typing import Any, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
+
+from fpsolve._support.arrays import Array
 
 __all__ = ["METHODS", "BackwardEuler", "Method", "Sdirk2"]
-
-Array = NDArray[np.float64]
 
 
 class Method(Protocol):

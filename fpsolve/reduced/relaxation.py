@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fpsolve._support.arrays import Array
 from fpsolve._support.checks import check_one_of
 from fpsolve._support.progress import ProgressCallback, reporting
 from fpsolve.errors import RunInterrupted
@@ -21,7 +21,6 @@ from fpsolve.reduced.step_errors import allowed_error, relaxation_lengths
 
 __all__ = ["Relaxation", "completed", "relax", "relax_extrapolated"]
 
-Array = NDArray[np.float64]
 
 # What cells hold and rates sum to is a matter of rounding only.
 _ROUNDING = 1e-9

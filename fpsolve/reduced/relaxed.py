@@ -4,15 +4,11 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-from numpy.typing import NDArray
-
+from fpsolve._support.arrays import Array
 from fpsolve.evolution.decay import DecayRate, fit_decay
 from fpsolve.evolution.evolution import Evolution
 
 __all__ = ["Relaxed"]
-
-Array = NDArray[np.float64]
 
 
 class Relaxed(Evolution):

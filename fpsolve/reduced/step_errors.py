@@ -5,11 +5,11 @@ from __future__ import annotations
 import warnings
 
 import numpy as np
-from numpy.typing import NDArray
+
+from fpsolve._support.arrays import Array
 
 __all__ = ["allowed_error", "relaxation_lengths"]
 
-Array = NDArray[np.float64]
 
 # A start may be rougher than anything that follows: its fast modes have no expansion in
 # ds. Within so many steps the error is the whole change, whatever the order, and right

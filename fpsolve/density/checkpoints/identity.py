@@ -8,8 +8,8 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fpsolve._support.arrays import Array
 from fpsolve._support.digests import SAMPLED, digest_of, plain
 from fpsolve.density.schemes.dictionaries import CODE
 from fpsolve.density.schemes.scheme import Scheme
@@ -23,7 +23,6 @@ from fpsolve.model.potentials.samples import digest_of_potential
 
 __all__ = ["differing_arguments", "digest_of_run", "identified"]
 
-Array = NDArray[np.float64]
 
 # Keys of digests, and what these are digests of.
 _STEP = "first_step"

@@ -10,9 +10,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
+from fpsolve._support.arrays import Array
 from fpsolve.density.checkpoints.checkpoint import Interval
 from fpsolve.density.checkpoints.snapshots import SnapshotFiles
 from fpsolve.density.checkpoints.store import PassStore
@@ -20,8 +18,6 @@ from fpsolve.density.keeper import Snapshot, Take
 from fpsolve.errors import CheckpointError
 
 __all__ = ["CheckpointKeeper"]
-
-Array = NDArray[np.float64]
 
 
 class CheckpointKeeper:

@@ -10,15 +10,14 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fpsolve._support.arrays import Array
 from fpsolve._support.durable import opened_npz, write_durably
 from fpsolve._support.json_text import bounded_json
 from fpsolve.density.keeper import Snapshot
 
 __all__ = ["SnapshotFiles"]
 
-Array = NDArray[np.float64]
 
 _SLOTS = ("a", "b")
 # Prefix of the arrays of a state among the members of a file.

@@ -10,14 +10,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fpsolve._support.arrays import Array
 from fpsolve._support.durable import sync
 from fpsolve.evolution.stored import StoredDensities
 
 __all__ = ["PassStore"]
-
-Array = NDArray[np.float64]
 
 
 class PassStore:

@@ -6,7 +6,6 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fpsolve._kernels.characteristics import (
     Displacement,
@@ -14,6 +13,7 @@ from fpsolve._kernels.characteristics import (
     interpolate_at_feet,
     interpolate_at_perturbed_feet,
 )
+from fpsolve._support.arrays import Array
 from fpsolve._support.checks import check_real
 from fpsolve.density.schemes.characteristics import Characteristics, Feet
 from fpsolve.density.schemes.form import DensityForm, State
@@ -21,8 +21,6 @@ from fpsolve.errors import MassCorrectionError
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.model.laydown import LayDownModel
 from fpsolve.model.potentials.at_points import gradient_at
-
-Array = NDArray[np.float64]
 
 # Below this a mass error is rounding of the sums: a factor removes it, since the
 # perturbed feet of an almost constant h differ by no more than rounding either.

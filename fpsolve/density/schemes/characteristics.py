@@ -5,13 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fpsolve._support.arrays import Array
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.model.laydown import LayDownModel
 from fpsolve.model.potentials.at_points import gradient_at
-
-Array = NDArray[np.float64]
 
 # Planes of constant ξ1 traced together: temporaries stay a small part of a density.
 CELLS_PER_SLAB = 8192

@@ -5,13 +5,11 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fpsolve._kernels.tridiagonal import solve_rows
+from fpsolve._support.arrays import Array
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.model.laydown import LayDownModel
-
-Array = NDArray[np.float64]
 
 # Steps whose factors are remembered; a run needs one or two.
 _KEPT = 4

@@ -4,18 +4,13 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
+from fpsolve._support.arrays import Array
 from fpsolve._support.checks import check_flag
 from fpsolve.density.schemes.form import State, balanced_form, plain_form
 from fpsolve.density.schemes.rotation import RotationDiffusion
 from fpsolve.density.schemes.translation import Translation
 from fpsolve.grids.phase_space import PhaseSpaceGrid, check_grid
 from fpsolve.model.laydown import LayDownModel, check_model
-
-Array = NDArray[np.float64]
-
 
 # Mass errors of the plain form that are rounding, and worth a factor.
 SEEN, ROUNDING = 2e-14, 1e-12

@@ -9,11 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fpsolve._kernels.functionals import row_sums, scale_rows
+from fpsolve._support.arrays import Array
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.model.laydown import LayDownModel
 from fpsolve.model.potentials.at_points import value_at
-
-Array = NDArray[np.float64]
 
 # e^{−600} = 1e−261: cells beyond carry no mass, and dividing by less would overflow.
 DEEPEST = 600.0

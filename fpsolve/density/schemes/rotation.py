@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fpsolve._kernels.rotation import RotationTable, rotate
+from fpsolve._support.arrays import Array
 from fpsolve.density.schemes.rotation_table import LARGEST_TABLE, rotation_table
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.model.laydown import LayDownModel
 from fpsolve.model.potentials.at_points import gradient_at
-
-Array = NDArray[np.float64]
 
 
 class RotationDiffusion:

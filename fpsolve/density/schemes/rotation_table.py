@@ -8,8 +8,7 @@ from numpy.typing import NDArray
 from fpsolve._kernels.lanes import LANES
 from fpsolve._kernels.moebius import first_of_group, rotation_matrices
 from fpsolve._kernels.rotation import QUADS_PER_BATCH, RotationTable
-
-Array = NDArray[np.float64]
+from fpsolve._support.arrays import Array
 
 # Values of |∇B| that are closer than this, relative to the smallest of them, share a
 # matrix: they differ by rounding only (mirror images of a cell). So do those that turn

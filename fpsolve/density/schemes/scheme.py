@@ -5,16 +5,14 @@ from __future__ import annotations
 from typing import Any, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fpsolve._support.arrays import Array
 from fpsolve._support.checks import shown
 from fpsolve.density.schemes.form import State
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.model.laydown import LayDownModel
 
 __all__ = ["Scheme", "checked_scheme", "checked_start"]
-
-Array = NDArray[np.float64]
 
 
 class Scheme(Protocol):

@@ -5,16 +5,14 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fpsolve._support.arrays import Array
 from fpsolve._support.checks import check_flag, check_one_of
 from fpsolve.density.schemes.adjusted_advection import AdjustedAdvection
 from fpsolve.density.schemes.diffusion import ImplicitDiffusion
 from fpsolve.density.schemes.form import State, balanced_form, plain_form
 from fpsolve.grids.phase_space import PhaseSpaceGrid, check_grid
 from fpsolve.model.laydown import LayDownModel, check_model
-
-Array = NDArray[np.float64]
 
 ORDERS = {"lie": 1, "strang": 2}
 # θ of the implicit step: backward Euler, Crank-Nicolson.

@@ -7,7 +7,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from fpsolve._support.arrays import Array
+
 # Weights that belong to the taps first, first + 1, …; shape (n_taps, n_alpha).
 Taps = tuple[int, Array]
 

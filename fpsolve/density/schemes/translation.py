@@ -5,14 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fpsolve._kernels.translation import translate, translate_positive
+from fpsolve._support.arrays import Array
 from fpsolve.density.schemes.stencils import Taps, check_order, flux_taps, shift_taps
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.model.laydown import LayDownModel
-
-Array = NDArray[np.float64]
 
 # A step needs the taps of two shifts (whole and half), Richardson those of four.
 _KEPT = 8

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
+
+from fpsolve._support.arrays import Array
 
 __all__ = ["Acceleration"]
 
-Array = NDArray[np.float64]
 DEPTH = 10
 
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fpsolve._support.arrays import Array
 from fpsolve.density.schemes.scheme import Scheme
 from fpsolve.density.stationary.estimates import DENSITY
 from fpsolve.density.stationary.result import SteadyState
@@ -16,7 +16,6 @@ from fpsolve.model.laydown import LayDownModel
 
 __all__ = ["at_rest"]
 
-Array = NDArray[np.float64]
 ROUNDING = 1e-15
 FINER = 2
 

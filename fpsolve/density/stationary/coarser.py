@@ -5,13 +5,12 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fpsolve._support.arrays import Array
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 
 __all__ = ["carried", "coarser_grid"]
 
-Array = NDArray[np.float64]
 # What a scheme needs, and what leaves a coarser grid below it.
 FEWEST, LEAST = 4, 6
 

@@ -5,13 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fpsolve._support.arrays import Array
 from fpsolve.density.stationary.strides import Stride
 
 __all__ = ["Correction"]
 
-Array = NDArray[np.float64]
 
 # Directions of one cycle, cycles of one solution, and directions that are remembered:
 # those in which a stride changes least.

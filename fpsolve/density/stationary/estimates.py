@@ -6,15 +6,14 @@ import math
 from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fpsolve._support.arrays import Array
 from fpsolve.grids import diagnostics
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.grids.row_sums import MOMENTS
 
 __all__ = ["DENSITY", "box_error", "field_error", "scaled", "signed_error", "total"]
 
-Array = NDArray[np.float64]
 Errors = Mapping[str, float]
 
 DENSITY = "density"

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fpsolve._support.arrays import Array
 from fpsolve.density.schemes.drift_kick import DriftKick
 from fpsolve.density.stationary.acceleration import Acceleration
 from fpsolve.density.stationary.correction import Correction
@@ -16,7 +16,6 @@ from fpsolve.grids import diagnostics
 
 __all__ = ["Stationary", "settled", "stationary"]
 
-Array = NDArray[np.float64]
 
 MOST_CORRECTIONS = 30
 # How accurately a correction is computed, and the error of the step.

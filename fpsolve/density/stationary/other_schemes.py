@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fpsolve._support.arrays import Array
 from fpsolve.density.schemes.scheme import Scheme
 from fpsolve.density.stationary.correction import DISTURBANCE
 from fpsolve.density.stationary.estimates import DENSITY, field_error, scaled, total
@@ -18,7 +18,6 @@ from fpsolve.grids import diagnostics, initial
 
 __all__ = ["judged", "own_density"]
 
-Array = NDArray[np.float64]
 MOST_CORRECTIONS, RESTART = 12, 20
 LEAST_ACCURATE, MOST_ACCURATE = 1e-2, 1e-6
 

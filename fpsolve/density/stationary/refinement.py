@@ -10,8 +10,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fpsolve._support.arrays import Array
 from fpsolve.density.schemes.drift_kick import DriftKick
 from fpsolve.density.stationary.coarser import carried, coarser_grid
 from fpsolve.density.stationary.iteration import Stationary
@@ -20,7 +20,6 @@ from fpsolve.errors import SteadyStateError
 
 __all__ = ["Refined", "refined"]
 
-Array = NDArray[np.float64]
 # Computes the density of a scheme from a start and a step.
 Solver = Callable[[DriftKick, Array, float], Stationary]
 

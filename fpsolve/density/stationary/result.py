@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fpsolve._support.arrays import Array
 from fpsolve.density.stationary.layout import STATIONARY
 from fpsolve.evolution.call import Call
 from fpsolve.evolution.saved import Saved
@@ -17,8 +17,6 @@ from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.model.laydown import LayDownModel
 
 __all__ = ["SteadyState"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -5,16 +5,14 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import brentq
 from scipy.special import i0e, i1e
 
+from fpsolve._support.arrays import Array
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.model.laydown import LayDownModel
 
 __all__ = ["concentration_of", "start_on"]
-
-Array = NDArray[np.float64]
 
 
 def concentration_of(speed: float) -> float:

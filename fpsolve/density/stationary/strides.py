@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fpsolve._kernels.threads import threads_worth_their_wait
+from fpsolve._support.arrays import Array
 from fpsolve.density.schemes.drift_kick import DriftKick
 from fpsolve.density.schemes.form import State
 from fpsolve.density.schemes.scheme import Scheme
@@ -15,7 +15,6 @@ from fpsolve.evolution.richardson import weights_of
 
 __all__ = ["Stride", "Strides"]
 
-Array = NDArray[np.float64]
 
 # One application of the map covers about this arclength: long enough for the slow
 # modes to move, short enough that the fast ones cost few steps.

@@ -9,14 +9,13 @@ from functools import cached_property
 import numpy as np
 from numpy.polynomial import Chebyshev
 from numpy.polynomial.legendre import leggauss
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from fpsolve._support.arrays import check_answers, check_finite_numbers
+from fpsolve._support.arrays import Array, check_answers, check_finite_numbers
 from fpsolve.reduced.energy.well import Well
 
 __all__ = ["OrbitAverages"]
 
-Array = NDArray[np.float64]
 Function = Callable[[Array], Array]
 # Of w = r exp(-B), g/w and √(1 - g²/w²).
 Integrand = Callable[[Array, Array, Array], Array]

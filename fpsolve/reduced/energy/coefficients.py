@@ -6,8 +6,9 @@ import math
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from fpsolve._support.arrays import Array
 from fpsolve._support.checks import check_call, check_integer, check_noise, check_real
 from fpsolve.model.potentials.potential import Potential
 from fpsolve.reduced.energy.averages import OrbitAverages
@@ -17,7 +18,6 @@ from fpsolve.reduced.energy.well import Well
 
 __all__ = ["Coefficients"]
 
-Array = NDArray[np.float64]
 
 _MOST_POINTS = 10**7
 

@@ -8,11 +8,11 @@ import numpy as np
 from numpy.polynomial.legendre import leggauss, legvander
 from numpy.typing import NDArray
 
+from fpsolve._support.arrays import Array
 from fpsolve.reduced.energy.averages import OrbitAverages
 
 __all__ = ["Elements", "graded_faces"]
 
-Array = NDArray[np.float64]
 
 # Ratio of neighbouring elements: S has a logarithm at g = 0, and functions analytic
 # away from it converge like 3^-2p in the eigenvalue on elements of this ratio.

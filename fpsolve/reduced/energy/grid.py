@@ -6,15 +6,15 @@ from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from fpsolve._support.arrays import Array
 from fpsolve._support.checks import check_flag, check_integer
 from fpsolve.reduced.energy.averages import OrbitAverages
 from fpsolve.reduced.energy.checks import check_energies
 
 __all__ = ["EnergyGrid"]
 
-Array = NDArray[np.float64]
 
 # With more cells the smallest lose their digits: masses and first moments of a cell are
 # differences of N and J. The error of order 2 is 1e-7 there.

@@ -5,13 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fpsolve._support.arrays import Array
 from fpsolve.reduced.energy.well import Well
 
 __all__ = ["Orbit", "orbit_of"]
 
-Array = NDArray[np.float64]
 
 _TOLERANCE = 1e-12
 

@@ -10,15 +10,15 @@ from itertools import pairwise
 import numpy as np
 from numpy.polynomial import Chebyshev
 from numpy.polynomial.chebyshev import chebpts1, chebvander
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from fpsolve._support.arrays import Array
 from fpsolve._support.checks import check_real
 from fpsolve.reduced.energy.averages import OrbitAverages
 from fpsolve.reduced.energy.checks import check_energies
 
 __all__ = ["Passage"]
 
-Array = NDArray[np.float64]
 Function = Callable[[Array], Array]
 
 # Intervals that shrink to both ends by this ratio, down to 1e-14 of g_max, and the

@@ -6,9 +6,9 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from typing import Any
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from fpsolve._support.arrays import Array
 from fpsolve._support.blas import one_blas_thread
 from fpsolve._support.checks import check_flag
 from fpsolve._support.progress import ProgressCallback
@@ -25,8 +25,6 @@ from fpsolve.reduced.energy.start import masses_of, starting_masses
 from fpsolve.reduced.relaxation import Relaxation, completed
 
 __all__ = ["EnergyProcess"]
-
-Array = NDArray[np.float64]
 
 
 def _described_start(start: Any, arguments: Mapping[str, Any]) -> Kept:

@@ -9,8 +9,9 @@ from functools import lru_cache
 from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from fpsolve._support.arrays import Array
 from fpsolve._support.checks import check_integer, check_one_of, check_real
 from fpsolve._support.memory import check_memory
 from fpsolve.evolution.call import Call
@@ -24,7 +25,6 @@ from fpsolve.reduced.energy.steps import Sphere, Transition
 
 __all__ = ["EnergyPaths", "sample_energies"]
 
-Array = NDArray[np.float64]
 
 _N_QUANTILES = 2000
 METHODS: dict[str, Any] = {"transition": Transition, "sphere": Sphere}

@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fpsolve._support.arrays import Array
 from fpsolve.evolution.call import Call
 from fpsolve.evolution.schedule import saved_index
 from fpsolve.reduced.energy.grid import EnergyGrid
@@ -16,8 +16,6 @@ from fpsolve.reduced.energy.layout import SOLUTION
 from fpsolve.reduced.relaxed import Relaxed
 
 __all__ = ["EnergySolution"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False, repr=False)

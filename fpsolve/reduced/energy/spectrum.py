@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from fpsolve._support.arrays import Array
 from fpsolve._support.checks import check_integer
 from fpsolve.reduced.energy.averages import OrbitAverages
 from fpsolve.reduced.energy.checks import check_energies
@@ -14,7 +15,6 @@ from fpsolve.reduced.energy.elements import Elements
 
 __all__ = ["EnergySpectrum", "energy_spectrum"]
 
-Array = NDArray[np.float64]
 
 FAMILIES = ("even", "odd")
 # Degree for the first eigenvalues, what a further one costs, and how much lower the

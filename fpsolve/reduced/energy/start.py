@@ -7,15 +7,14 @@ from collections.abc import Callable
 
 import numpy as np
 from numpy.polynomial.legendre import leggauss
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from fpsolve._support.arrays import check_numbers
+from fpsolve._support.arrays import Array, check_numbers
 from fpsolve.reduced.energy.checks import check_energies
 from fpsolve.reduced.energy.grid import EnergyGrid
 
 __all__ = ["masses_of", "starting_masses"]
 
-Array = NDArray[np.float64]
 
 _NODES, _WEIGHTS = leggauss(8)
 

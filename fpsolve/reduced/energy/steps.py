@@ -7,12 +7,12 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
+from fpsolve._support.arrays import Array
 from fpsolve.reduced.energy.averages import OrbitAverages
 from fpsolve.reduced.energy.grid import EnergyGrid
 
 __all__ = ["Sphere", "Transition"]
 
-Array = NDArray[np.float64]
 Cells = NDArray[np.intp]
 
 # Cells of the transition matrix: their error in a mean is about 1e-6.

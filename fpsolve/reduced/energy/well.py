@@ -6,13 +6,12 @@ import math
 from functools import cached_property, lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fpsolve._support.arrays import Array
 from fpsolve.model.potentials.potential import Potential
 
 __all__ = ["Well"]
 
-Array = NDArray[np.float64]
 
 # Radii between e^-60 and e^60 are searched for circles, twenty to a factor of e.
 _REACH = 60.0

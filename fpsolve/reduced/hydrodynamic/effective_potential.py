@@ -7,8 +7,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from fpsolve._support.arrays import Array
 from fpsolve.grids.plane import PlaneGrid
 from fpsolve.model.laydown import LayDownModel
 from fpsolve.model.potentials.at_points import value_at
@@ -21,8 +22,6 @@ from fpsolve.model.potentials.quadratic import QuadraticPotential
 from fpsolve.model.potentials.wells import check_places
 
 __all__ = ["EffectivePotential", "check_limit"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from fpsolve._support.arrays import Array
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.grids.plane import PlaneGrid, plane_of
 from fpsolve.model.laydown import LayDownModel
@@ -14,8 +14,6 @@ from fpsolve.reduced.hydrodynamic.effective_potential import check_limit
 from fpsolve.reduced.hydrodynamic.scharfetter_gummel import generator
 
 __all__ = ["LimitEquation"]
-
-Array = NDArray[np.float64]
 
 
 class LimitEquation:

@@ -5,16 +5,13 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
-from fpsolve._support.arrays import check_finite_numbers
+from fpsolve._support.arrays import Array, check_finite_numbers
 from fpsolve._support.checks import check_non_negative, check_positive
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.grids.plane import PlaneGrid
 
 __all__ = ["InitialLayer"]
-
-Array = NDArray[np.float64]
 
 
 class InitialLayer:

@@ -6,8 +6,9 @@ from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from fpsolve._support.arrays import Array
 from fpsolve._support.blas import one_blas_thread
 from fpsolve._support.checks import check_flag, check_positive, check_tolerance
 from fpsolve._support.progress import ProgressCallback
@@ -31,7 +32,6 @@ from fpsolve.reduced.hydrodynamic.spectrum import HydrodynamicSpectrum, spectrum
 
 __all__ = ["HydrodynamicLimit"]
 
-Array = NDArray[np.float64]
 Start = ArrayLike | Callable[..., ArrayLike]
 ROUNDING = 1e-15
 

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from fpsolve._support.arrays import check_finite_numbers, check_numbers
+from fpsolve._support.arrays import Array, check_finite_numbers, check_numbers
 from fpsolve._support.checks import check_integer, check_non_negative, check_pair
 from fpsolve.grids.initial import checked_covariance
 from fpsolve.model.laydown import LayDownModel
@@ -17,8 +17,6 @@ from fpsolve.model.potentials.quadratic import QuadraticPotential
 from fpsolve.reduced.hydrodynamic.effective_potential import check_limit
 
 __all__ = ["OrnsteinUhlenbeckLimit"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

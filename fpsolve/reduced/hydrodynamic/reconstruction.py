@@ -5,9 +5,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
-from fpsolve._support.arrays import check_finite_numbers
+from fpsolve._support.arrays import Array, check_finite_numbers
 from fpsolve._support.checks import check_positive, shown
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.grids.plane import PlaneGrid
@@ -16,7 +15,6 @@ from fpsolve.model.potentials.potential import Potential
 
 __all__ = ["balanced_gradient", "reconstruct"]
 
-Array = NDArray[np.float64]
 
 # exp of more than this is clipped: it multiplies a density that has long underflowed.
 _LARGEST_EXPONENT = 300.0

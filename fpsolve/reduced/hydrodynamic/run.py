@@ -7,8 +7,8 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fpsolve._support.arrays import Array
 from fpsolve._support.progress import ProgressCallback
 from fpsolve._support.provenance import Stopwatch
 from fpsolve.errors import DomainTooSmallError
@@ -21,7 +21,6 @@ from fpsolve.reduced.relaxation import Relaxation, completed
 
 __all__ = ["check_box", "checked_start", "solve"]
 
-Array = NDArray[np.float64]
 
 _MOMENTS = ("xi1", "xi2", "xi1_xi1", "xi2_xi2", "xi1_xi2")
 

@@ -8,9 +8,8 @@ from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
-from fpsolve._support.arrays import check_numbers
+from fpsolve._support.arrays import Array, check_numbers
 from fpsolve._support.checks import check_integer, check_positive
 from fpsolve._support.memory import check_memory
 from fpsolve.errors import NonFinitePathError
@@ -26,7 +25,6 @@ from fpsolve.reduced.hydrodynamic.ornstein_uhlenbeck import OrnsteinUhlenbeckLim
 
 __all__ = ["METHODS", "HydrodynamicPaths", "sample"]
 
-Array = NDArray[np.float64]
 
 METHODS = ("exact", "heun")
 

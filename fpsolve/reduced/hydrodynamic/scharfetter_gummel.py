@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["bernoulli", "generator", "gibbs_masses"]
+from fpsolve._support.arrays import Array
 
-Array = NDArray[np.float64]
+__all__ = ["bernoulli", "generator", "gibbs_masses"]
 
 
 def bernoulli(x: Array) -> Array:

@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fpsolve._support.arrays import Array
 from fpsolve.evolution.call import Call
 from fpsolve.grids.plane import PlaneGrid
 from fpsolve.reduced.hydrodynamic.equation import LimitEquation
@@ -16,8 +16,6 @@ from fpsolve.reduced.hydrodynamic.layout import SOLUTION
 from fpsolve.reduced.relaxed import Relaxed
 
 __all__ = ["HydrodynamicSolution", "HydrodynamicSteadyState"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False, repr=False)

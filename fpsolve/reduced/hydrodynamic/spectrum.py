@@ -6,8 +6,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fpsolve._support.arrays import Array
 from fpsolve._support.checks import check_integer
 from fpsolve.grids.plane import PlaneGrid
 from fpsolve.reduced.hydrodynamic.equation import LimitEquation
@@ -15,7 +15,6 @@ from fpsolve.reduced.hydrodynamic.scharfetter_gummel import gibbs_masses
 
 __all__ = ["HydrodynamicSpectrum", "slowest_modes", "spectrum_of", "symmetrised"]
 
-Array = NDArray[np.float64]
 
 # The shift, below the eigenvalue 0 by this share of the diagonal: far enough for a
 # stable factorisation, close enough for the smallest rates to be found first.

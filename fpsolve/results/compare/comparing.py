@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fpsolve._support.arrays import Array
 from fpsolve.evolution.series import is_extrapolated
 from fpsolve.results.compare.alignment import aligned, on_arclength
 from fpsolve.results.compare.comparison import Comparison
@@ -25,7 +25,6 @@ if TYPE_CHECKING:
 
 __all__ = ["compare"]
 
-Array = NDArray[np.float64]
 
 ESTIMATED, STANDARD = "_error", "_standard_error"
 # The L1 distance of densities and the estimate of its error, by the name in a file.

@@ -6,8 +6,8 @@ import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fpsolve._support.arrays import Array
 from fpsolve.results.compare.differences import distance
 
 if TYPE_CHECKING:
@@ -15,7 +15,6 @@ if TYPE_CHECKING:
 
 __all__ = ["density_distance", "on_common_grid", "to_angles"]
 
-Array = NDArray[np.float64]
 
 PLANE = ("xi1", "xi2")
 _ANGLE = "alpha"

@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from fpsolve._support.arrays import Array
+
 if TYPE_CHECKING:
     import xarray as xr
 
 __all__ = ["FLOOR", "Difference", "difference_of", "same_bits"]
 
-Array = NDArray[np.float64]
 
 # Quantities are of order one: below this they are rounding, whatever their own size.
 FLOOR = 1e-12

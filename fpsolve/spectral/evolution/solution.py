@@ -7,8 +7,8 @@ from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fpsolve._support.arrays import Array
 from fpsolve._support.checks import told_apart
 from fpsolve.evolution.call import Call
 from fpsolve.evolution.evolution import WithSeries
@@ -23,8 +23,6 @@ from fpsolve.spectral.evolution.quadratic import quadratic
 from fpsolve.spectral.evolution.steady import SpectralSteadyState, spectral_steady_state
 
 __all__ = ["SpectralSolution"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
