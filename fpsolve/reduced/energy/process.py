@@ -229,16 +229,9 @@ class EnergyProcess(Coefficients):
             If an argument does not fit.
         """
         paths = sample_energies(
-            self._averages,
-            self.noise,
-            n_paths,
-            s_end,
-            ds,
-            seed,
-            initial,
-            save_at,
+            self._averages, self.noise, n_paths, s_end, ds, seed, initial, save_at,
             method,
-        )
+        )  # fmt: skip
         return replace(paths, process=self)
 
     def __repr__(self) -> str:

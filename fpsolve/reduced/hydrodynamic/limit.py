@@ -270,22 +270,14 @@ class HydrodynamicLimit(LimitEquation):
             If a path runs away: ds is too long for a potential this steep.
         """
         return sampling.sample(
-            self.model,
-            n_paths,
-            s_end,
-            ds,
-            seed=seed,
-            initial=initial,
-            save_at=save_at,
-            method=method,
-        )
+            self.model, n_paths, s_end, ds, seed=seed, initial=initial,
+            save_at=save_at, method=method,
+        )  # fmt: skip
 
     def reconstruct(self, P: Array, grid: PhaseSpaceGrid, *, order: int = 1) -> Array:
         """p ≈ 𝒫/2π + ε p₁ on the phase-space grid; see `reconstruction.reconstruct`."""
-        model = self.model
-        return reconstruction.reconstruct(
-            P, grid, model.potential, model.noise, order=order
-        )
+        potential, noise = self.model.potential, self.model.noise
+        return reconstruction.reconstruct(P, grid, potential, noise, order=order)
 
     def initial_layer(self, p0: Array, grid: PhaseSpaceGrid) -> InitialLayer:
         """What the slow equation does not see of a start p0; see `InitialLayer`."""

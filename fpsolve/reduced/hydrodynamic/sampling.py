@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
 import numpy as np
 
 from fpsolve._support.arrays import Array, check_numbers
-from fpsolve._support.checks import check_integer, check_positive
+from fpsolve._support.checks import check_integer, check_one_of, check_positive
 from fpsolve._support.memory import check_memory
 from fpsolve.errors import NonFinitePathError
 from fpsolve.evolution.call import Call
@@ -99,8 +99,7 @@ def sample(
     if method == "exact":
         stops = checked_stops(s_end, save_at)
         check_room(n_paths, stops.size)
-        paths = _exact(model, starts(initial, n_paths, rng), stops, rng)
-        return replace(paths, model=model)
+        return _exact(model, starts(initial, n_paths, rng), stops, rng)
     if ds is None:
         raise ValueError(
             "`ds` must be given for the method 'heun', got None; its bias is of order "
@@ -108,8 +107,7 @@ def sample(
         )
     schedule = make_schedule((0.0, s_end), ds, save_at)
     check_room(n_paths, len(schedule.saves))
-    paths = _heun(model, starts(initial, n_paths, rng), schedule, rng)
-    return replace(paths, model=model)
+    return _heun(model, starts(initial, n_paths, rng), schedule, rng)
 
 
 def checked_seed(seed: Any) -> Any:
@@ -131,9 +129,7 @@ def checked_method(model: LayDownModel, method: str | None) -> str:
     quadratic = isinstance(model.potential, QuadraticPotential)
     if method is None:
         return "exact" if quadratic else "heun"
-    if method not in METHODS:
-        known = ", ".join(repr(name) for name in METHODS)
-        raise ValueError(f"`method` must be one of {known}, got {method!r}.")
+    check_one_of("method", method, METHODS)
     if method == "exact" and not quadratic:
         raise ValueError(
             "`method` must be 'heun' for a potential that is not quadratic, got "
@@ -198,7 +194,7 @@ def _exact(
     for i, gap in enumerate(gaps):
         xi = process.transition(xi, gap, rng) if gap else xi
         saved[i] = xi
-    return HydrodynamicPaths(stops, saved, "exact", float(gaps.max()))
+    return HydrodynamicPaths(stops, saved, "exact", float(gaps.max()), model)
 
 
 def _heun(
@@ -224,7 +220,7 @@ def _heun(
         if step in saves:
             saved.append(xi)
     s = np.array([schedule.s(step) for step in schedule.saves])
-    return HydrodynamicPaths(s, np.array(saved), "heun", schedule.ds)
+    return HydrodynamicPaths(s, np.array(saved), "heun", schedule.ds, model)
 
 
 class _Drift:
