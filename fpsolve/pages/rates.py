@@ -34,6 +34,8 @@ RATES = {
 }
 _THEORY = {"exact A²/2": "small_noise_asymptote", "Λ/A²": "large_noise_asymptote"}
 _HALVED = "entropy_rate"
+# Bounds and asymptotes, which have no error; what is measured is not shown without one.
+_EXACT = {"hypocoercive_bound", *_THEORY.values()}
 _MEANINGS = (
     ("∫ H ds", "inverse decay rate of figure 5, from a run of the density"),
     ("spectral ∫ H ds", "the same by a spectral solution"),
@@ -72,9 +74,9 @@ def rate_columns(
 
 
 def _cells(dataset: xr.Dataset, name: str, factor: float = 1.0) -> list[str]:
-    """Numbers with their errors, if there are any; a dash where nothing is known."""
+    """Numbers with their errors, but for bounds; a dash where nothing is known."""
     values = (factor * dataset[name]).to_numpy().tolist()
-    if f"{name}_error" not in dataset:
+    if name in _EXACT:
         return [f"{value:.3g}" if math.isfinite(value) else "-" for value in values]
     errors = (factor * dataset[f"{name}_error"]).to_numpy().tolist()
     return [
