@@ -55,6 +55,7 @@ from .model.potentials import Potential as Potential
 from .model.potentials import PowerPotential as PowerPotential
 from .model.potentials import QuadraticPotential as QuadraticPotential
 from .model.process import Process as Process
+from .model.smooth import SmoothLayDownModel as SmoothLayDownModel
 from .pages import report as report
 from .paths import Paths as Paths
 from .paths import sample_paths as sample_paths

@@ -19,8 +19,8 @@ from fpsolve._support.provenance import Stopwatch
 from fpsolve.errors import RunError, RunInterrupted
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.grids.plane import PlaneGrid
+from fpsolve.model.fibre import FibreModel
 from fpsolve.model.identity.digests import digest_or_none
-from fpsolve.model.laydown import LayDownModel
 from fpsolve.model.potentials.dictionaries import potential_to_dict
 from fpsolve.model.potentials.potential import Potential
 
@@ -162,7 +162,7 @@ def described(value: Any, name: str, arrays: Arrays) -> Any:
         return {f"${own}": described(parts(), name, arrays)}
     if isinstance(value, Potential):
         return {"$potential": potential_to_dict(value)}
-    if isinstance(value, LayDownModel):
+    if isinstance(value, FibreModel):
         return {"$model": value.to_dict()}
     if isinstance(value, PhaseSpaceGrid | PlaneGrid):
         kind = "plane" if isinstance(value, PlaneGrid) else "grid"

@@ -8,7 +8,6 @@ from typing import Any
 import pde
 
 from fpsolve._support.arrays import Array
-from fpsolve._support.checks import check_kind
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.grids.plane import PlaneGrid
 from fpsolve.interop.differences import (
@@ -19,7 +18,7 @@ from fpsolve.interop.differences import (
 )
 from fpsolve.interop.fields import from_pde_field, own_grid
 from fpsolve.model.curves.curve import Curve
-from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.laydown import LayDownModel, check_model
 
 __all__ = ["FokkerPlanckPDE", "HydrodynamicPDE", "expect_grid"]
 
@@ -34,8 +33,7 @@ class _LayDownPDE(pde.PDEBase):  # type: ignore[misc]
     """What both equations share: a model, a rate on a grid, its two back ends."""
 
     def __init__(self, model: LayDownModel) -> None:
-        remedy = "it holds potential, noise and curve"
-        check_kind("model", model, LayDownModel, remedy)
+        check_model(model)
         super().__init__()
         self.model = model
         self._last: tuple[Any, Rate] | None = None

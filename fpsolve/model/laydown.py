@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -11,18 +10,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fpsolve._support.arrays import Array, check_numbers
-from fpsolve._support.checks import (
-    check_kind,
-    check_noise,
-    check_non_negative,
-    construct,
-    shown,
-)
+from fpsolve._support.checks import check_kind
 from fpsolve.model.curves.belts import FixedBelt
 from fpsolve.model.curves.curve import Curve
-from fpsolve.model.curves.dictionaries import curve_from_dict, curve_to_dict
-from fpsolve.model.potentials.claims import check_gradient
-from fpsolve.model.potentials.dictionaries import potential_from_dict, potential_to_dict
+from fpsolve.model.curves.dictionaries import curve_to_dict
+from fpsolve.model.fibre import FibreModel, checked_noise
+from fpsolve.model.potentials.dictionaries import potential_to_dict
 from fpsolve.model.potentials.evidence import check_wells_met
 from fpsolve.model.potentials.potential import Potential
 
@@ -30,7 +23,7 @@ __all__ = ["LayDownModel", "check_model"]
 
 
 @dataclass(frozen=True)
-class LayDownModel:
+class LayDownModel(FibreModel):
     """∂ₛp + (τ(α) - γ'(s))·∇p - ∂_α(∇B·τ⊥ p) = (A²/2) ∂_αα p.
 
     The Fokker-Planck equation of the basic lay-down model
@@ -68,32 +61,13 @@ class LayDownModel:
     curve: Curve = field(default_factory=FixedBelt)
 
     def __post_init__(self) -> None:
-        if not isinstance(self.potential, Potential):
-            raise TypeError(
-                f"`potential` must be a Potential, got {shown(self.potential)}; wrap "
-                "functions in CallablePotential."
-            )
-        if not isinstance(self.curve, Curve):
-            raise TypeError(
-                f"`curve` must be a Curve, got {shown(self.curve)}; use "
-                "MovingBelt(speed) for a moving belt."
-            )
-        noise = check_non_negative("noise", self.noise)
-        if noise:
-            noise = check_noise("noise", noise)
-        object.__setattr__(self, "noise", noise)
-        if not self.potential.of_fpsolve:
-            check_gradient(self.potential.value, self.potential.gradient)
+        self._check_parts()
+        object.__setattr__(self, "noise", checked_noise(self.noise))
 
     @property
     def diffusivity(self) -> float:
         """Angular diffusivity A²/2."""
         return 0.5 * self.noise**2
-
-    @property
-    def belt_speed(self) -> float:
-        """Belt speed v, the mean of -γ1'."""
-        return self.curve.speed
 
     @property
     def has_equilibrium(self) -> bool:
@@ -155,32 +129,22 @@ class LayDownModel:
     @property
     def equation(self) -> str:
         """The Fokker-Planck equation as plain text with the actual parameters."""
-        velocity = self._velocity("τ(α)", "γ'(s)", " e₁")
-        diffusion = f"{self.diffusivity:g} ∂_αα p" if self.noise else "0"
-        terms = f"∂ₛp + {velocity}·∇p - ∂_α(∇B·τ⊥ p) = {diffusion}"
-        unknowns = [f"B = {self.potential.formula}"]
-        if not self.curve.autonomous:
-            unknowns.append(f"γ(s) = {self.curve.formula}")
-        return f"{terms}, {', '.join(unknowns)}"
+        terms = f"∂ₛp + {self._transport()} - ∂_α(∇B·τ⊥ p) = {self._diffusion()}"
+        return ", ".join([terms, *self._unknowns()])
 
     @property
     def process_equation(self) -> str:
         """The stochastic equation (6) as plain text with the actual parameters."""
-        curve = self.curve
-        motion = "τ(α) ds - dγ"
-        if curve.fixed:
-            motion = "τ(α) ds"
-        elif curve.autonomous:
-            motion = f"(τ(α) {_signed(curve.speed)} e₁) ds"
         noise = f" + {self.noise:g} dW" if self.noise else ""
-        terms = [
-            f"dξ = {motion}",
-            f"dα = -∇B(ξ)·τ⊥(α) ds{noise}",
-            f"B = {self.potential.formula}",
-        ]
-        if not curve.autonomous:
-            terms.append(f"γ(s) = {curve.formula}")
-        return ", ".join(terms)
+        angle = f"dα = -∇B(ξ)·τ⊥(α) ds{noise}"
+        return ", ".join([self._motion(), angle, *self._unknowns()])
+
+    @property
+    def process_latex(self) -> tuple[str, str]:
+        """The stochastic equations of ξ and of α as LaTeX."""
+        noise = rf" + {self.noise:g}\,dW" if self.noise else ""
+        angle = rf"d\alpha = -\nabla B(\xi)\cdot\tau^\perp(\alpha)\,ds{noise}"
+        return self._motion_latex(), angle
 
     def to_dict(self) -> dict[str, Any]:
         """Return the model as a JSON-able dictionary.
@@ -193,22 +157,6 @@ class LayDownModel:
             "curve": curve_to_dict(self.curve),
         }
 
-    @classmethod
-    def from_dict(cls, description: Mapping[str, Any]) -> LayDownModel:
-        """Return the model that `to_dict` described.
-
-        Raises
-        ------
-        ValueError
-            If a kind or a parameter is unknown, or potential or curve are a user's own.
-        """
-        readers = {"potential": potential_from_dict, "curve": curve_from_dict}
-        parameters = {
-            name: readers[name](entry) if name in readers else entry
-            for name, entry in description.items()
-        }
-        return construct(cls, "model", parameters)
-
     def __repr__(self) -> str:
         parameters = (
             f"potential={self.potential!r}, noise={self.noise!r}, curve={self.curve!r}"
@@ -218,35 +166,24 @@ class LayDownModel:
     @property
     def latex(self) -> str:
         """The Fokker-Planck equation as LaTeX, without dollar signs and without B."""
-        velocity = self._velocity(r"\tau(\alpha)", r"\gamma'(s)", r"\,e_1")
-        second = r"\,\partial_{\alpha\alpha} p"
-        diffusion = f"{self.diffusivity:g}{second}" if self.noise else "0"
         return (
-            rf"\partial_s p + {velocity}\cdot\nabla_\xi p"
-            rf" - \partial_\alpha(\nabla B\cdot\tau^\perp p) = {diffusion}"
+            rf"\partial_s p + {self._transport_latex()}"
+            r" - \partial_\alpha(\nabla B\cdot\tau^\perp p)"
+            rf" = {self._diffusion_latex()}"
         )
 
-    def _repr_latex_(self) -> str:
-        unknowns = rf",\qquad B(\xi) = {self.potential.latex}"
-        if not self.curve.autonomous:
-            unknowns += rf",\quad \gamma(s) = {self.curve.latex}"
-        return f"${self.latex}{unknowns}$"
+    def _diffusion(self) -> str:
+        return f"{self.diffusivity:g} ∂_αα p" if self.noise else "0"
 
-    def _velocity(self, tau: str, slope: str, belt: str) -> str:
-        """τ - γ' in the signs of plain text or of LaTeX."""
-        if self.curve.fixed:
-            return tau
-        if not self.curve.autonomous:
-            return f"({tau} - {slope})"
-        return f"({tau} {_signed(self.belt_speed)}{belt})"
+    def _diffusion_latex(self) -> str:
+        if not self.noise:
+            return "0"
+        return rf"{self.diffusivity:g}\,\partial_{{\alpha\alpha}} p"
 
 
 def check_model(model: Any) -> None:
     """Raise TypeError unless `model` is a lay-down model."""
-    check_kind(
-        "model", model, LayDownModel, "make one by LayDownModel(potential, noise)"
-    )
-
-
-def _signed(number: float) -> str:
-    return f"{'-' if number < 0 else '+'} {abs(number):g}"
+    remedy = "make one by LayDownModel(potential, noise)"
+    if isinstance(model, FibreModel):
+        remedy = "its `white_noise_limit` is one, for a relaxation length R → 0"
+    check_kind("model", model, LayDownModel, remedy)

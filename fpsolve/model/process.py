@@ -12,8 +12,10 @@ from fpsolve._support.arrays import Array, check_numbers
 from fpsolve._support.checks import check_non_negative, check_positive, keep_checked
 from fpsolve.model.curves.belts import FixedBelt, MovingBelt
 from fpsolve.model.curves.curve import Curve, check_speed
+from fpsolve.model.fibre import FibreModel
 from fpsolve.model.laydown import LayDownModel
 from fpsolve.model.potentials.quadratic import QuadraticPotential
+from fpsolve.model.smooth import SmoothLayDownModel
 
 __all__ = ["Process"]
 
@@ -32,13 +34,15 @@ _POSSIBLE_RANGES = {
     "noise": (0.0, 500.0),
     "speed_ratio": (-1.0, 1.0),
 }
+# The curvature of a fibre relaxes over no more than the widest throwing range.
+_LONGEST_RELAXATION = 0.5
 # Faster than air, which pulls the fibre, can be.
 _FASTEST_SPINNING = 1000.0
 
 
 @dataclass(frozen=True)
 class Process:
-    """σ1* = 1, σ2* = σ2/σ1, A* = √σ1 A: SI units to the dimensionless model and back.
+    """σ1* = 1, σ2* = σ2/σ1, A* = √σ1 A, R* = R/σ1: SI units to the model and back.
 
     The unit of length is the throwing range σ1; the arclength s has it too. The unit
     of time is σ1 divided by the spinning speed, because the fibre is laid down at that
@@ -55,14 +59,18 @@ class Process:
         rest.
     spinning_speed : float
         Fibre length laid down per second, in m/s.
+    relaxation_length : float, optional
+        Length R in metres over which the curvature of the fibre relaxes. With it
+        `model` is the smooth one, without it the basic one.
 
     Raises
     ------
     ValueError
-        If a throwing range or the spinning speed is not positive, the noise negative,
-        or the speed ratio not between -1 and 1. Also where a number can only be a slip
-        of units: throwing ranges outside 0.1 mm to 0.5 m, a noise above 500 m^-1/2, a
-        spinning speed of 1000 m/s or more.
+        If a throwing range, the spinning speed or the relaxation length is not
+        positive, the noise negative, or the speed ratio not between -1 and 1. Also
+        where a number can only be a slip of units: throwing ranges outside 0.1 mm to
+        0.5 m, a relaxation length above 0.5 m, a noise above 500 m^-1/2, a spinning
+        speed of 1000 m/s or more.
 
     Warns
     -----
@@ -71,7 +79,7 @@ class Process:
 
     References
     ----------
-    [KMW09]_, section 3.1, remark 3.1.
+    [KMW09]_, section 3.1, remark 3.1, and section 3.2.
     """
 
     sigma1: float
@@ -79,23 +87,26 @@ class Process:
     noise: float
     speed_ratio: float
     spinning_speed: float
+    relaxation_length: float | None = None
 
     def __post_init__(self) -> None:
         keep_checked(self, check_positive, "sigma1", "sigma2", "spinning_speed")
         keep_checked(self, check_non_negative, "noise")
         keep_checked(self, check_speed, "speed_ratio")
+        self._check_relaxation_length()
         self._check_units()
         self._warn_outside_industrial_ranges()
 
     @property
-    def model(self) -> LayDownModel:
-        """The dimensionless model: σ1* = 1, σ2* = σ2/σ1, A* = √σ1 A."""
+    def model(self) -> FibreModel:
+        """The dimensionless model: σ1* = 1, σ2* = σ2/σ1, A* = √σ1 A, R* = R/σ1."""
         belt: Curve = MovingBelt(self.speed_ratio) if self.speed_ratio else FixedBelt()
-        return LayDownModel(
-            potential=QuadraticPotential(1.0, self.sigma2 / self.sigma1),
-            noise=math.sqrt(self.sigma1) * self.noise,
-            curve=belt,
-        )
+        potential = QuadraticPotential(1.0, self.sigma2 / self.sigma1)
+        noise = math.sqrt(self.sigma1) * self.noise
+        if self.relaxation_length is None:
+            return LayDownModel(potential, noise, belt)
+        length = self.relaxation_length / self.sigma1
+        return SmoothLayDownModel(potential, length, noise, belt)
 
     @property
     def length(self) -> float:
@@ -133,6 +144,17 @@ class Process:
         A density of (ξ, α) stays a density per radian in α.
         """
         return _times(p, self.length**-2)
+
+    def _check_relaxation_length(self) -> None:
+        if self.relaxation_length is None:
+            return
+        length = check_positive("relaxation_length", self.relaxation_length)
+        if not length <= _LONGEST_RELAXATION:
+            raise ValueError(
+                f"`relaxation_length` must be at most {_LONGEST_RELAXATION:g} m, got "
+                f"{length:g}; millimetres given instead of metres?"
+            )
+        object.__setattr__(self, "relaxation_length", length)
 
     def _check_units(self) -> None:
         for name, lowest, highest, unit, slip in _INDUSTRIAL_RANGES:

@@ -9,8 +9,9 @@ from typing import Any
 from fpsolve._support.digests import SAMPLED
 from fpsolve._support.labels import UNREADABLE, to_json
 from fpsolve.model.curves.dictionaries import KINDS as CURVE_KINDS
-from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.fibre import FibreModel
 from fpsolve.model.potentials.dictionaries import KINDS as POTENTIAL_KINDS
+from fpsolve.model.reading import model_from_dict
 
 __all__ = ["describe_model", "is_of_a_user", "read_model"]
 
@@ -21,13 +22,13 @@ _KNOWN: dict[str, Collection[str]] = {
 
 
 def describe_model(
-    model: LayDownModel | None, equation: str | None, provenance: Mapping[str, Any]
+    model: FibreModel | None, equation: str | None, provenance: Mapping[str, Any]
 ) -> dict[str, str]:
     """Return the attributes `equation` and `model`.
 
     Parameters
     ----------
-    model : LayDownModel or None
+    model : FibreModel or None
         None if it was read from a file from which it could not be made again; its
         description goes on as it came.
     equation : str or None
@@ -41,9 +42,7 @@ def describe_model(
     return {"equation": equation or "", "model": description}
 
 
-def read_model(
-    attributes: Mapping[str, Any], provenance: dict[str, Any]
-) -> LayDownModel | None:
+def read_model(attributes: Mapping[str, Any], provenance: dict[str, Any]) -> Any:
     """Return the model, or None with a warning if it was made of a user's functions.
 
     Its description and equation are added to the provenance then.
@@ -56,7 +55,7 @@ def read_model(
     """
     description = attributes["model"]
     try:
-        return LayDownModel.from_dict(description)
+        return model_from_dict(description)
     except ValueError as error:
         if not _of_a_user(description):
             raise

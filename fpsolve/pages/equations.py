@@ -6,7 +6,7 @@ import html
 from xml.etree import ElementTree
 
 from fpsolve.model.curves.curve import Curve
-from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.fibre import FibreModel
 from fpsolve.model.potentials.potential import Potential
 from fpsolve.pages.blocks import Equation
 
@@ -59,7 +59,7 @@ def mathml(latex: str, plain: str) -> Equation:
     return Equation(ElementTree.tostring(element, encoding="unicode"), plain)
 
 
-def model_equations(model: LayDownModel) -> list[Equation]:
+def model_equations(model: FibreModel) -> list[Equation]:
     """Return the Fokker-Planck equation of a model, its potential and its curve."""
     plain, _, _ = model.equation.partition(", B = ")
     return [

@@ -20,7 +20,7 @@ from fpsolve.pages.settings import (
 )
 
 if TYPE_CHECKING:
-    from fpsolve.model.laydown import LayDownModel
+    from fpsolve.model.fibre import FibreModel
     from fpsolve.paths.result import Paths
 
 __all__ = ["MOMENTS", "moment_rows", "section"]
@@ -61,24 +61,16 @@ def moment_rows(paths: Paths) -> list[list[str]]:
 
 def _equations(paths: Paths) -> list[Block]:
     # Files may come without a model.
-    model: LayDownModel | None = paths.model
+    model: FibreModel | None = paths.model
     if model is None:
         return unread_model(paths.provenance)
-    position, angle, *_ = model.process_equation.split(", ")
-    curve = model.curve
-    motion = r"\tau(\alpha)\,ds - d\gamma"
-    if curve.fixed:
-        motion = r"\tau(\alpha)\,ds"
-    elif curve.autonomous:
-        sign = "-" if curve.speed < 0 else "+"
-        motion = rf"(\tau(\alpha) {sign} {abs(curve.speed):g}\,e_1)\,ds"
-    noise = rf" + {model.noise:g}\,dW" if model.noise else ""
-    turn = rf"d\alpha = -\nabla B(\xi)\cdot\tau^\perp(\alpha)\,ds{noise}"
+    equations = zip(
+        model.process_latex, model.process_equation.split(", "), strict=False
+    )
     return [
-        mathml(rf"d\xi = {motion}", position),
-        mathml(turn, angle),
+        *(mathml(latex, plain) for latex, plain in equations),
         potential_equation(model.potential),
-        *curve_equations(curve),
+        *curve_equations(model.curve),
     ]
 
 

@@ -18,7 +18,7 @@ from fpsolve.pages.numbers import assigned
 if TYPE_CHECKING:
     from fpsolve.grids.phase_space import PhaseSpaceGrid
     from fpsolve.model.curves.curve import Curve
-    from fpsolve.model.laydown import LayDownModel
+    from fpsolve.model.fibre import FibreModel
     from fpsolve.model.process import Process
     from fpsolve.reduced.energy.process import EnergyProcess
 
@@ -89,6 +89,10 @@ def units_part(process: Process | None) -> list[Part]:
         ("unit of length (ξ, s)", f"{1e3 * process.length:g} mm"),
         ("unit of time (s)", f"{1e3 * process.time:g} ms to lay down one unit of s"),
     ]
+    if process.relaxation_length is not None:
+        length = process.relaxation_length
+        told = f"{1e3 * length:g} mm, R = {length / process.sigma1:g}"
+        items.insert(2, ("relaxation length", told))
     return [Part("Production process", [Facts(items)])]
 
 
@@ -97,7 +101,7 @@ def with_options(name: str, options: Mapping[str, Any]) -> str:
     return f"{name}({assigned(options)})" if options else name
 
 
-def model_facts(model: LayDownModel | None) -> list[tuple[str, str]]:
+def model_facts(model: FibreModel | None) -> list[tuple[str, str]]:
     """Return potential, noise and curve of a model, if it is known."""
     if model is None:
         return []
@@ -109,7 +113,7 @@ def model_facts(model: LayDownModel | None) -> list[tuple[str, str]]:
 
 
 def model_or_unread(
-    model: LayDownModel | None, provenance: Mapping[str, Any]
+    model: FibreModel | None, provenance: Mapping[str, Any]
 ) -> list[Block]:
     """Return the equations of a model, or how one of a user's own described itself."""
     return [*model_equations(model)] if model else unread_model(provenance)

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from fpsolve._support.arrays import Array
 from fpsolve.grids.plane import PlaneGrid
-from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.laydown import LayDownModel, check_model
 from fpsolve.model.potentials.at_points import value_at
 from fpsolve.model.potentials.evidence import check_wells_met
 from fpsolve.model.potentials.linear import LinearPotential
@@ -107,8 +107,7 @@ def _log_normalisation_of_linear(slope: float, pull: float) -> float:
 
 def check_limit(model: LayDownModel) -> EffectivePotential:
     """Φ of a model, if its limit exists; ValueError or TypeError otherwise."""
-    if not isinstance(model, LayDownModel):
-        raise TypeError(f"`model` must be a LayDownModel, got {model!r}.")
+    check_model(model)
     if not model.noise > 0:
         raise ValueError(
             f"`noise` must be positive for the limit of large noise, got "

@@ -14,8 +14,8 @@ from fpsolve.errors import NotRepeatableError
 from fpsolve.evolution.call import ARRAY, KEPT, USER_CODE, Call
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.grids.plane import PlaneGrid
-from fpsolve.model.laydown import LayDownModel
 from fpsolve.model.potentials.dictionaries import potential_from_dict
+from fpsolve.model.reading import model_from_dict
 from fpsolve.paths.law_dataset import law_from_formula
 from fpsolve.paths.laws import DensityLaw
 from fpsolve.spectral.bases.sectors import Sector
@@ -53,7 +53,7 @@ _SCHEME, _MODEL = "$scheme", "$model"
 # What an object is called in a call, and what makes it of its parts.
 READERS: dict[str, Callable[[Any], Any]] = {
     "$potential": potential_from_dict,
-    _MODEL: LayDownModel.from_dict,
+    _MODEL: model_from_dict,
     "$grid": PhaseSpaceGrid.from_dict,
     "$plane": PlaneGrid.from_dict,
     "$law": law_from_formula,

@@ -6,8 +6,7 @@ import math
 
 import numpy as np
 
-from fpsolve._support.checks import check_kind
-from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.laydown import LayDownModel, check_model
 from fpsolve.model.potentials.potential import Potential
 from fpsolve.model.potentials.quadratic import QuadraticPotential
 from fpsolve.spectral.bases.hermite import HermiteDiscretisation
@@ -60,7 +59,7 @@ def discretisation_for(model: LayDownModel) -> Discretisation:
 
 def check(model: LayDownModel) -> None:
     """Raise unless the model has a stationary density that it forgets its start for."""
-    check_kind("model", model, LayDownModel)
+    check_model(model)
     if not model.noise > 0:
         raise ValueError(
             "`noise` must be positive, got 0; without noise the orbits of different "

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from fpsolve._support.checks import check_kind, check_positive
+from fpsolve._support.checks import check_positive
+from fpsolve.model import laydown
 from fpsolve.model.laydown import LayDownModel
 from fpsolve.model.potentials.quadratic import QuadraticPotential
 
@@ -13,7 +14,7 @@ __all__ = ["check_model", "checked_tolerance", "quadratic"]
 
 def check_model(model: LayDownModel) -> None:
     """Raise unless the expansion solves the model."""
-    check_kind("model", model, LayDownModel)
+    laydown.check_model(model)
     quadratic(model)
     if not model.noise > 0:
         raise ValueError(
