@@ -1,10 +1,21 @@
-"""Steps of many paths at once: random numbers, forces, and three integrators.
+"""Steps of many paths at once: random numbers, forces, integrators of both models.
 
 Paths are taken in blocks of `LANES`. The numbers of a block lie in one flat work
 array `w`, each quantity in a row of its own, so that the compiler sees that no two
 loops overlap and turns every loop into vector instructions. A block is always worked
 through as a whole, its unused lanes too: a path is then bitwise the same whatever its
 neighbours are.
+
+A step of length h of a smooth path starts at (ξ, α, κ) and takes the force at the point
+that half a step along the tangent leads to. While the drift of the angle of the basic
+model, f = -∇B·τ⊥(α), stays as it is, (κ, α, ∫α) at the end of the step are Gaussian
+with a covariance in closed form; they are drawn together. Then
+
+    ᾱ = α + J/h, with J = ∫ (α(u) - α) du drawn for the first f,
+    f̄ = -∇B·⟨τ⊥⟩, where ⟨τ⟩ = exp(-V/2h) τ(ᾱ) is the mean tangent of the step,
+
+and κ and α end where a drift leads them that changes linearly, from f, with the mean f̄;
+ξ moves by h⟨τ⟩. Here V is what is expected of ∫ (α(u) - ᾱ)² du.
 """
 
 import math
@@ -25,6 +36,12 @@ FORCE1, FORCE2 = 10 * LANES, 11 * LANES
 KEPT1, KEPT2, KEPT3, KEPT4, KEPT5 = (LANES * row for row in range(12, 17))
 N_ROWS = 17
 N_STATE = 5
+# Further rows for smooth paths: the curvature, noise of κ, of α and of ᾱ, and three
+# standard normal numbers for each of four steps.
+KAPPA, NOISE1, NOISE2, NOISE3, NUMBERS = (LANES * row for row in range(17, 22))
+N_NUMBERS, N_STEPS = 3, 4
+N_SMOOTH_ROWS = N_ROWS + 4 + N_NUMBERS * N_STEPS
+N_SMOOTH_STATE = N_STATE + 1
 # Powers 0 to 4 of each component of ξ, and their products of at most that degree.
 N_POWERS, N_PRODUCTS = 5, 15
 
@@ -51,6 +68,29 @@ class Noise(NamedTuple):
     step: int
     key: tuple[int, int]
     scale: float
+
+
+class SmoothStep(NamedTuple):
+    """What a step of the smooth model multiplies with.
+
+    Attributes
+    ----------
+    ds : float
+    weights : tuple
+        Of κ, f and Δ in κ(h), of κ, f and Δ in α(h) - α, and of κ and f in the mean
+        angle of the step; Δ is the change of f over the step.
+    noise : tuple
+        The lower triangle, row by row, that makes the noise of κ, of α and of the mean
+        angle of three standard normal numbers.
+    spread : (float, float)
+        Half the mean of (α(u) - ᾱ)² over the step: by noise, and by κ, as a multiple
+        of κ².
+    """
+
+    ds: float
+    weights: tuple[float, ...]
+    noise: tuple[float, ...]
+    spread: tuple[float, float]
 
 
 @njit(cache=True, forceinline=True, fastmath={"contract"}, error_model="numpy")
@@ -529,3 +569,145 @@ def sum_powers(state, sums):
             sums[block, N_PRODUCTS + 1] += sine
             sums[block, N_PRODUCTS + 2] += cosine * cosine
             sums[block, N_PRODUCTS + 3] += sine * sine
+
+
+@njit(cache=True, fastmath={"contract"}, error_model="numpy")
+def numbers_of_four_steps(path, group, key0, key1, w, bits):
+    """Twelve standard normal numbers for every lane, three for each step of a group."""
+    for part in range(N_NUMBERS):
+        standard_normals(path, N_NUMBERS * group + part, key0, key1, w, bits)
+        first = NUMBERS + N_STEPS * part * LANES
+        for i in range(N_STEPS * LANES):
+            w[first + i] = w[NORMAL + i]
+
+
+@njit(cache=True, fastmath={"contract"}, error_model="numpy")
+def noise_block(noise, numbers, w):
+    """Noise of κ, α and ᾱ, of the three normal numbers of this step at `numbers`."""
+    n11, n21, n22, n31, n32, n33 = noise
+    for i in range(N_NUMBERS * LANES):
+        w[NOISE1 + i] = w[numbers + i]
+    for i in range(LANES):
+        z1, z2, z3 = w[NOISE1 + i], w[NOISE2 + i], w[NOISE3 + i]
+        w[NOISE1 + i] = n11 * z1
+        w[NOISE2 + i] = n21 * z1 + n22 * z2
+        w[NOISE3 + i] = n31 * z1 + n32 * z2 + n33 * z3
+
+
+@njit(cache=True, fastmath={"contract"}, error_model="numpy")
+def turn_block(ds, weights, spread, shift1, shift2, w):
+    """κ and the angle by which τ turns; ξ from where the force was taken to the end."""
+    k0, k1, k2, a0, a1, a2, m0, m1 = weights
+    spread_of_noise, spread_of_kappa = spread
+    for i in range(LANES):
+        c, s, kappa = w[COSINE + i], w[SINE + i], w[KAPPA + i]
+        f = w[FORCE1 + i] * s - w[FORCE2 + i] * c
+
+        # Half the mean of (α(u) - ᾱ)² over the step, and exp(-x) of it to third order.
+        x = spread_of_noise + spread_of_kappa * kappa * kappa
+        straight = 1 / (1 + x * (1 + 0.5 * x))
+        mean = m0 * kappa + m1 * f + w[NOISE3 + i]
+        turns = math.floor(mean / TURN + 0.5)
+        x, y = cosine_sine(mean - turns * TURN)
+        mean_c, mean_s = straight * (c * x - s * y), straight * (s * x + c * y)
+
+        change = 2 * (w[FORCE1 + i] * mean_s - w[FORCE2 + i] * mean_c - f)
+        w[ANGLE + i] = a0 * kappa + a1 * f + a2 * change + w[NOISE2 + i]
+        w[KAPPA + i] = k0 * kappa + k1 * f + k2 * change + w[NOISE1 + i]
+        w[XI1 + i] += ds * (mean_c - 0.5 * c) - shift1
+        w[XI2 + i] += ds * (mean_s - 0.5 * s) - shift2
+
+
+@njit(cache=True, fastmath={"contract"}, error_model="numpy")
+def load_smooth_block(state, start, n_lanes, w):
+    """As `load_block`, with the curvature."""
+    load_block(state, start, n_lanes, w)
+    for i in range(LANES):
+        w[KAPPA + i] = state[N_STATE, start + min(i, n_lanes - 1)]
+
+
+@njit(cache=True, fastmath={"contract"}, error_model="numpy")
+def store_smooth_block(w, start, n_lanes, state):
+    """As `store_block`, with the curvature."""
+    store_block(w, start, n_lanes, state)
+    for i in range(n_lanes):
+        state[N_STATE, start + i] = w[KAPPA + i]
+
+
+@njit(cache=True, parallel=True, fastmath={"contract"}, error_model="numpy")
+def advance_smooth_paths(path, step, key, law, potential, shifts, trace, state):
+    """Advance every path by as many steps as there are pairs of shifts.
+
+    Parameters
+    ----------
+    path, step : int
+        Numbers of the first path and of the first step: the counters of the noise.
+    key : (int, int)
+    law : SmoothStep
+        As `fpsolve.paths.smooth_step` computes it.
+    potential : (int, float, float)
+        Kind and its two parameters.
+    shifts : ndarray, shape (n_steps, 2, 2)
+        γ over the first and second half of every step.
+    trace : ndarray, shape (n_steps, 6, n_paths) or (0, 6, 0)
+        Receives the state after every step, if it has room.
+    state : ndarray, shape (6, n_paths)
+        ξ1, ξ2, cos α, sin α, full turns and κ; changed in place.
+    """
+    ds, weights, noise, spread = law
+    kind, first, second = potential
+    n_paths, n_steps = state.shape[1], shifts.shape[0]
+    for block in prange((n_paths + LANES - 1) // LANES):
+        w = np.zeros(N_SMOOTH_ROWS * LANES)
+        bits = w.view(np.int64)
+        start = block * LANES
+        n_lanes = min(LANES, n_paths - start)
+        load_smooth_block(state, start, n_lanes, w)
+        for j in range(n_steps):
+            number = (step + j) & 3
+            if j == 0 or number == 0:
+                group = (step + j) >> 2
+                numbers_of_four_steps(path + start, group, key[0], key[1], w, bits)
+            translate_block(0.5 * ds, shifts[j, 0, 0], shifts[j, 0, 1], w)
+            force_block(kind, first, second, w)
+            limit_force(0.25 * ds, w)
+            noise_block(noise, NUMBERS + N_NUMBERS * number * LANES, w)
+            turn_block(ds, weights, spread, shifts[j, 1, 0], shifts[j, 1, 1], w)
+            rotate_block(w)
+            if trace.shape[0] > 0:
+                store_smooth_block(w, start, n_lanes, trace[j])
+        store_smooth_block(w, start, n_lanes, state)
+
+
+@njit(cache=True, parallel=True, fastmath={"contract"}, error_model="numpy")
+def turn_paths(law, numbers, forces, shift, state):
+    """The second half of a step of every path, with given noise and given ∇B.
+
+    Parameters
+    ----------
+    law : SmoothStep
+    numbers : ndarray, shape (3, n_paths)
+        Standard normal.
+    forces : ndarray, shape (2, n_paths)
+        ∇B where half a step along the tangent leads to, at which ξ is.
+    shift : ndarray, shape (2,)
+        γ over the second half of the step.
+    state : ndarray, shape (6, n_paths)
+    """
+    ds, weights, noise, spread = law
+    n_paths = state.shape[1]
+    for block in prange((n_paths + LANES - 1) // LANES):
+        w = np.zeros(N_SMOOTH_ROWS * LANES)
+        start = block * LANES
+        n_lanes = min(LANES, n_paths - start)
+        load_smooth_block(state, start, n_lanes, w)
+        for i in range(n_lanes):
+            w[FORCE1 + i] = forces[0, start + i]
+            w[FORCE2 + i] = forces[1, start + i]
+            for number in range(N_NUMBERS):
+                w[NUMBERS + number * LANES + i] = numbers[number, start + i]
+        limit_force(0.25 * ds, w)
+        noise_block(noise, NUMBERS, w)
+        turn_block(ds, weights, spread, shift[0], shift[1], w)
+        rotate_block(w)
+        store_smooth_block(w, start, n_lanes, state)

@@ -32,7 +32,8 @@ Workers = Annotated[
     ),
 ]
 # What a part of the paths has in common with all of them.
-_OF_EVERY_PATH = ("xi", "tau", "turns", "alpha", "start_xi", "start_tau", "start_turns")
+_OF_EVERY_PATH = ("xi", "tau", "turns", "kappa", "alpha", "start_xi", "start_tau",
+                  "start_turns", "start_kappa")  # fmt: skip
 
 
 def rerun(

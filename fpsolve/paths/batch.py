@@ -8,11 +8,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve._kernels.paths import N_STATE
 from fpsolve._support.arrays import Array
 from fpsolve.paths.ensemble import START_BLOCK, Ensemble, angle_of
 from fpsolve.paths.histogram import count_paths
-from fpsolve.paths.moments import N_SUMS, moment_sums
+from fpsolve.paths.moments import moment_sums, n_sums
 
 __all__ = ["Batch", "BatchRun", "batches_of", "run_batch"]
 
@@ -32,12 +31,12 @@ class Batch(NamedTuple):
     first, n : int
     step : int
         Number of the step that was reached.
-    states : ndarray, shape (n_saved, 5, n)
-        Or (n_saved, 5, 0) when they are not kept; likewise `start` and `end`.
-    sums : ndarray, shape (n_saved, N_SUMS)
+    states : ndarray, shape (n_saved, n_state, n)
+        Or (n_saved, n_state, 0) when they are not kept; likewise `start` and `end`.
+    sums : ndarray, shape (n_saved, n_sums)
     counts : ndarray of int64, shape (n_saved, n1, n2, n_alpha)
     outside : ndarray of int64, shape (n_saved,)
-    start, end : ndarray, shape (5, n)
+    start, end : ndarray, shape (n_state, n)
     n_fast : int
         Paths that end where a step does not resolve how fast the force turns them.
     """
@@ -113,13 +112,13 @@ class BatchRun:
         """What has been kept until now."""
         grid, keep = self.ensemble.grid, self.ensemble.keep
         shape = (len(self.counts), *((0, 0, 0) if grid is None else grid.shape))
-        n_kept = self.n if keep else 0
+        n_kept, n_state = self.n if keep else 0, len(self.state)
         return Batch(
             first=self.first,
             n=self.n,
             step=self.step,
-            states=np.array(self.states).reshape(len(self.sums), N_STATE, n_kept),
-            sums=np.array(self.sums).reshape(-1, N_SUMS),
+            states=np.array(self.states).reshape(len(self.sums), n_state, n_kept),
+            sums=np.array(self.sums).reshape(-1, n_sums(n_state)),
             counts=np.array(self.counts, dtype=np.int64).reshape(shape),
             outside=np.array(self.outside, dtype=np.int64),
             # Copies: a view of nothing would keep the whole array alive.

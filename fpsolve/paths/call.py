@@ -35,7 +35,7 @@ def call_of(ensemble: Ensemble) -> Call:
 def _described_law(law: Any) -> Any:
     """The law of the start, with what the paths hold of it left to them."""
     if isinstance(law, GivenStart):
-        return Kept("initial.xi", law.xi), Kept("initial.alpha", law.alpha)
+        return tuple(Kept(f"initial.{name}", one) for name, one in law.parts.items())
     if type(law) is DensityLaw:
         p = Kept("initial.p", np.asarray(law.p))
         return {"$density_law": {"grid": law.grid, "p": p}}

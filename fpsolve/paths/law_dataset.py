@@ -25,6 +25,7 @@ __all__ = ["FORMULAS", "Law", "describe_law", "law_from_formula"]
 
 # Stands in `provenance` for a law that cannot be read back.
 _UNREADABLE = "initial_description"
+_GIVEN = {"xi": "deviation ξ", "alpha": "angle α", "kappa": "curvature κ"}
 _DENSITY = ("initial_xi1", "initial_xi2", "initial_alpha")
 # Laws that are a formula, so that a dictionary holds them whole.
 FORMULAS = (PointLaw, GaussianLaw, EquilibriumLaw)
@@ -47,8 +48,8 @@ def _digest_of_draws(law: Any) -> str | None:
     """What a law of unknown code draws from a generator that is always the same."""
     # A user's law raises whatever it likes.
     try:
-        xi, alpha = law.sample(start_generator(0, 0), START_BLOCK)
-        return digest_of(np.column_stack([xi, alpha]))
+        sample = law.sample(start_generator(0, 0), START_BLOCK)
+        return digest_of(np.column_stack(list(sample)))
     except Exception:
         return None
 
@@ -66,12 +67,13 @@ class Law(Part):
         law = result.initial
         stored: Stored = {"initial": to_json(describe_law(law, result.provenance))}
         if isinstance(law, DensityLaw):
-            name = labels("probability density of the start")
-            stored["initial_density"] = (_DENSITY, np.asarray(law.p), name)
+            about = labels("probability density of the start")
+            stored["initial_density"] = (_DENSITY, np.asarray(law.p), about)
         if isinstance(law, GivenStart):
-            xi, alpha = "deviation ξ given for the start", "angle α given for the start"
-            stored["initial_xi"] = (("initial_path", "component"), law.xi, labels(xi))
-            stored["initial_alpha"] = (("initial_path",), law.alpha, labels(alpha))
+            for name, values in law.parts.items():
+                over = ("initial_path", "component")[: values.ndim]
+                words = f"{_GIVEN[name]} given for the start"
+                stored[f"initial_{name}"] = (over, values, labels(words))
         return stored
 
     def read(self, source: Source) -> dict[str, Any]:
@@ -93,7 +95,8 @@ class Law(Part):
 def _law(parameters: dict[str, Any], dataset: xr.Dataset) -> Any:
     kind = parameters.pop("kind")
     if kind == "given":
-        return GivenStart(dataset["initial_xi"].values, dataset["initial_alpha"].values)
+        names = [f"initial_{name}" for name in _GIVEN if f"initial_{name}" in dataset]
+        return GivenStart(*(dataset[name].values for name in names))
     if kind == "density":
         grid = PhaseSpaceGrid.from_dict(parameters["grid"])
         return DensityLaw(grid, dataset["initial_density"].values)

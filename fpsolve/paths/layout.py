@@ -27,8 +27,9 @@ from fpsolve.evolution.parts import STATUS, Model, checked_step
 from fpsolve.evolution.schedule import Schedule
 from fpsolve.evolution.series import SERIES
 from fpsolve.grids.phase_space import PhaseSpaceGrid
-from fpsolve.paths.ensemble import Ensemble
+from fpsolve.paths.ensemble import KAPPA, Ensemble
 from fpsolve.paths.law_dataset import Law
+from fpsolve.paths.moments import n_sums
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -42,7 +43,14 @@ STATE = (
     ("xi", slice(0, 2), "deviation ξ"),
     ("tau", slice(2, 4), "tangent τ = (cos α, sin α)"),
     ("turns", 4, "full turns of the angle α"),
+    ("kappa", KAPPA, "curvature κ"),
 )
+# Moments that no solution has.
+_MOMENTS = {
+    "mean_square": "mean E ‖ξ‖²",
+    "mean_kappa": "mean E κ",
+    "mean_kappa2": "mean square E κ²",
+}
 # States of a result: field, what begins the names of variables, dimensions, when.
 STATES: Any = (
     ("states", "", ("s",), ""),
@@ -134,23 +142,40 @@ class _Positions(Part):
 
     def read(self, source: Source) -> dict[str, Any]:
         dataset, ensemble = source.dataset, source.fields["ensemble"]
+        n_state = _n_state(source)
         if not ensemble.keep:
             n_saved = dataset.sizes["s"]
-            nothing = np.empty((5, 0))
-            return {"states": np.empty((n_saved, 5, 0)), "start": nothing,
+            nothing = np.empty((n_state, 0))
+            return {"states": np.empty((n_saved, n_state, 0)), "start": nothing,
                     "end": nothing}  # fmt: skip
-        names = [prefix + name for _, prefix, *_ in STATES for name, *_ in STATE]
+        parts = [name for name, *_ in state_parts(n_state)]
+        names = [prefix + name for _, prefix, *_ in STATES for name in parts]
         check_complete(dataset, *names)
         check_dimensions(dataset, "xi", ("s", "path", "component"))
         check_counts("n_paths", ensemble.n_paths, dataset.sizes["path"], "`xi`")
-        return {name: _states(dataset, prefix) for name, prefix, *_ in STATES}
+        return {name: _states(dataset, prefix, n_state) for name, prefix, *_ in STATES}
+
+
+def state_parts(n_state: int) -> list[tuple[str, Any, str]]:
+    """The parts of states of so many numbers."""
+    return [part for part in STATE if part[1] != KAPPA or n_state > KAPPA]
+
+
+def _n_state(source: Source) -> int:
+    """Numbers of a state, from those of which there are sums; they fit the model."""
+    n_found, ensemble = source.fields["sums"].shape[1], source.fields["ensemble"]
+    if ensemble.model is None:
+        return KAPPA + 1 if n_found == n_sums(KAPPA + 1) else KAPPA
+    n_state: int = ensemble.n_state
+    check_counts("moment_sums", n_found, n_sums(n_state), "`model`")
+    return n_state
 
 
 def _variables(
     states: Array, prefix: str, dimensions: tuple[str, ...], when: str
 ) -> Stored:
     variables: Stored = {}
-    for name, place, words in STATE:
+    for name, place, words in state_parts(states.shape[-2]):
         values, over = states[..., place, :], (*dimensions, "path")
         if isinstance(place, slice):
             values, over = np.swapaxes(values, -1, -2), (*over, "component")
@@ -158,10 +183,10 @@ def _variables(
     return variables
 
 
-def _states(dataset: xr.Dataset, prefix: str) -> Array:
+def _states(dataset: xr.Dataset, prefix: str, n_state: int) -> Array:
     turns = dataset[f"{prefix}turns"].values
-    states = np.empty((*turns.shape[:-1], 5, turns.shape[-1]))
-    for name, place, _ in STATE:
+    states = np.empty((*turns.shape[:-1], n_state, turns.shape[-1]))
+    for name, place, _ in state_parts(n_state):
         values = dataset[prefix + name].values
         vector = isinstance(place, slice)
         states[..., place, :] = np.swapaxes(values, -1, -2) if vector else values
@@ -174,7 +199,7 @@ class _Estimates(Part):
     def write(self, result: Any) -> Stored:
         moments, variables = result.moments(), {}
         for name, values in moments.values.items():
-            words = SERIES[name].words if name in SERIES else "mean E ‖ξ‖²"
+            words = SERIES[name].words if name in SERIES else _MOMENTS[name]
             error = moments.standard_errors[name]
             variables[name] = ("s", values, labels(words))
             variables[f"{name}_standard_error"] = (

@@ -9,18 +9,26 @@ import numpy as np
 
 from fpsolve._kernels.paths import LANES, N_POWERS, N_PRODUCTS, sum_powers
 from fpsolve._support.arrays import Array
+from fpsolve.paths.ensemble import KAPPA
 
-__all__ = ["N_SUMS", "Moments", "moment_sums"]
+__all__ = ["Moments", "moment_sums", "n_sums"]
 
 
-# Powers (i, j) of ξ1 and ξ2 that are summed, then cos, sin and their squares.
+# Powers (i, j) of ξ1 and ξ2 that are summed, then cos, sin and their squares; of smooth
+# paths also powers of κ.
 POWERS = [(i, total - i) for total in range(N_POWERS) for i in range(total, -1, -1)]
 N_SUMS = N_PRODUCTS + 4
+KAPPA_POWERS = (1, 2, 4)
 PLACE = {power: place for place, power in enumerate(POWERS)}
 
 
+def n_sums(n_state: int) -> int:
+    """Number of the sums over states of a kind."""
+    return N_SUMS if n_state == KAPPA else N_SUMS + len(KAPPA_POWERS)
+
+
 def moment_sums(state: Array) -> Array:
-    """Sums over paths of the powers of ξ and of cos α and sin α; shape (N_SUMS,).
+    """Sums over paths of the powers of ξ and of cos α and sin α, of κ; shape (n_sums,).
 
     Blocks are summed one after the other, so that threads change nothing. Paths may be
     so far away that powers overflow; their moments are then infinite.
@@ -29,7 +37,12 @@ def moment_sums(state: Array) -> Array:
     sums = np.zeros((n_blocks, N_SUMS))
     sum_powers(state, sums)
     total: Array = np.cumsum(sums, axis=0)[-1]
-    return total
+    if len(state) == KAPPA:
+        return total
+    # A power may overflow, as those of ξ.
+    with np.errstate(over="ignore"):
+        powers = [np.sum(state[KAPPA] ** power) for power in KAPPA_POWERS]
+    return np.array([*total, *powers])
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,7 +50,8 @@ class Moments:
     """Estimates of moments at every saved s, with standard errors.
 
     The names are those of the series of a `Solution` (`mean_xi1`, `variance_xi1`,
-    `covariance`, `mean_cos_alpha`, …) and `mean_square`, E‖ξ‖². Variances are unbiased;
+    `covariance`, `mean_cos_alpha`, …) and `mean_square`, E‖ξ‖²; of smooth paths there
+    are `mean_kappa` and `mean_kappa2`, E κ and E κ². Variances are unbiased;
     the standard errors are those of independent paths, and are NaN for one path.
     ``moments["mean_xi1"]`` gives the pair of both.
 
@@ -46,7 +60,7 @@ class Moments:
     s : ndarray, shape (n_saved,)
     n_paths : int
     values, standard_errors : dict of ndarray, each of shape (n_saved,)
-    sums : ndarray, shape (n_saved, N_SUMS)
+    sums : ndarray, shape (n_saved, n_sums)
         Sums over paths from which both come.
     """
 
@@ -102,6 +116,16 @@ def _estimates(sums: Array, n: int) -> dict[str, tuple[Array, Array]]:
         "mean_cos_alpha": (cosine, _error(cosine2 - cosine**2, n)),
         "mean_sin_alpha": (sine, _error(sine2 - sine**2, n)),
         "mean_square": (square, _error(fourth - square**2, n)),
+        **(_of_kappa(sums[:, N_SUMS:] / n, n) if sums.shape[1] > N_SUMS else {}),
+    }
+
+
+def _of_kappa(raw: Array, n: int) -> dict[str, tuple[Array, Array]]:
+    """The moments of the curvature."""
+    mean, square, fourth = raw.T
+    return {
+        "mean_kappa": (mean, _error(square - mean**2, n)),
+        "mean_kappa2": (square, _error(fourth - square**2, n)),
     }
 
 

@@ -18,7 +18,7 @@ from fpsolve.evolution.saved import Saved
 from fpsolve.evolution.schedule import saved_index
 from fpsolve.grids.phase_space import PhaseSpaceGrid, check_grid
 from fpsolve.paths.averages import Observable, observed, time_averages
-from fpsolve.paths.ensemble import Ensemble, angle_of
+from fpsolve.paths.ensemble import KAPPA, Ensemble, angle_of
 from fpsolve.paths.histogram import Histogram, count_paths, wrapped
 from fpsolve.paths.layout import PATHS
 from fpsolve.paths.moments import Moments
@@ -30,7 +30,7 @@ __all__ = ["Paths"]
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Paths(Saved):
-    """Paths (ξ, α) of the basic model (6) at the saved arclengths.
+    """Paths (ξ, α) of the model (6), or (ξ, α, κ) of (22), at the saved arclengths.
 
     Everything is dimensionless, angles are in radians. Estimates come with the
     standard errors of independent paths; the bias of the step comes in addition.
@@ -40,15 +40,16 @@ class Paths(Saved):
     ensemble : Ensemble
         Model, number of paths, steps, seed, method and law of the start.
     s : ndarray, shape (n_saved,)
-    states : ndarray, shape (n_saved, 5, n_paths)
-        ξ1, ξ2, cos α, sin α and full turns; (n_saved, 5, 0) when not kept.
+    states : ndarray, shape (n_saved, n_state, n_paths)
+        ξ1, ξ2, cos α, sin α, full turns and, of a smooth model, κ; without paths,
+        (n_saved, n_state, 0), when not kept.
     sums : ndarray, shape (n_saved, n_sums)
         Sums over paths for the moments.
     counts : ndarray of int64, shape (n_saved, n1, n2, n_alpha)
         Histograms collected while sampling.
     outside : ndarray of int64, shape (n_saved,)
         Paths outside of the ξ box of the histograms.
-    start, end : ndarray, shape (5, n_paths)
+    start, end : ndarray, shape (n_state, n_paths)
         States at the beginning and at the end.
     status : str
         "finished" or "interrupted".
@@ -119,6 +120,23 @@ class Paths(Saved):
     def wrapped_alpha(self) -> Array:
         """Angles α in [0, 2π); shape (n_saved, n_paths)."""
         return wrapped(self.alpha)
+
+    @property
+    def kappa(self) -> Array:
+        """Curvatures κ of smooth fibres; shape (n_saved, n_paths).
+
+        Raises
+        ------
+        ValueError
+            If the model is the basic one, whose fibres have none.
+        """
+        states = self._kept(self.states)
+        if not states.shape[1] > KAPPA:
+            raise ValueError(
+                "`model` must be a SmoothLayDownModel for paths to have a curvature, "
+                "got paths of the basic model."
+            )
+        return states[:, KAPPA]
 
     @property
     def eta(self) -> Array:
@@ -265,7 +283,7 @@ class Paths(Saved):
         return traced(self.ensemble, first, self.states_at_start(first, n), end)
 
     def states_at_start(self, first: int, n: int) -> Array:
-        """States (5, n) at which some of the paths begin."""
+        """States (n_state, n) at which some of the paths begin."""
         if self.kept:
             return self.start[:, first : first + n].copy()
         return self.ensemble.initial_state(first, n)

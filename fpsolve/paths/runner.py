@@ -26,7 +26,6 @@ from fpsolve.model.identity.digests import digest_or_none
 from fpsolve.paths.batch import Batch, BatchRun, batches_of, run_batch
 from fpsolve.paths.call import call_of
 from fpsolve.paths.ensemble import Ensemble, GivenStart
-from fpsolve.paths.integrators import LARGEST_TURN
 
 __all__ = ["completed", "going_on", "required_memory", "stepwise"]
 
@@ -87,10 +86,11 @@ def warn_of_long_steps(ensemble: Ensemble, batches: list[Batch]) -> None:
     # Three standard deviations: a few paths are no share of all.
     if n_fast > allowed + 3.0 * math.sqrt(allowed):
         share = n_fast / ensemble.n_paths
+        longest = ensemble.integrator.largest_turn
         warnings.warn(
             f"`ds` = {ensemble.schedule.ds:g} is long for this force: |∇B| ds exceeds "
-            f"{LARGEST_TURN:g} where {100 * share:.2g} % of the paths end, and "
-            "averages may be off by as much; compare with a shorter step",
+            f"{longest:g} where {100 * share:.2g} % of the paths end, and averages may "
+            "be off by as much; compare with a shorter step",
             UserWarning,
             stacklevel=4,
         )
@@ -289,6 +289,7 @@ def going_on(
 def required_memory(ensemble: Ensemble) -> int:
     """Bytes of the result: states at every saved s and both ends, and histograms."""
     n_saved = len(ensemble.schedule.saves)
-    kept = 5 * 8 * ensemble.n_paths * (n_saved + 2) if ensemble.keep else 0
+    state = 8 * ensemble.n_state * ensemble.n_paths
+    kept = state * (n_saved + 2) if ensemble.keep else 0
     counted = 0 if ensemble.grid is None else ensemble.grid.nbytes * (n_saved + 2)
     return kept + counted + OVERHEAD

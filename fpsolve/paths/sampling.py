@@ -1,4 +1,4 @@
-"""Sample the stochastic differential equation (6)."""
+"""Sample the stochastic differential equations (6) and (22)."""
 
 from __future__ import annotations
 
@@ -18,13 +18,14 @@ from fpsolve._support.memory import check_memory
 from fpsolve._support.progress import ProgressCallback
 from fpsolve.errors import GridMismatchError
 from fpsolve.grids.phase_space import PhaseSpaceGrid, check_grid
-from fpsolve.model.laydown import LayDownModel, check_model
+from fpsolve.model.fibre import FibreModel, check_fibre_model
+from fpsolve.model.smooth import SmoothLayDownModel
 from fpsolve.paths.ensemble import START_BLOCK, Ensemble, GivenStart, checked_sample
-from fpsolve.paths.integrators import METHODS
 from fpsolve.paths.laws import DensityLaw, EquilibriumLaw, GaussianLaw, PointLaw
 from fpsolve.paths.randomness import seed_number, start_generator
 from fpsolve.paths.result import Paths
 from fpsolve.paths.runner import completed, required_memory, stepwise
+from fpsolve.paths.samplers import integrator_of
 
 __all__ = ["sample_paths"]
 
@@ -34,7 +35,7 @@ KNOWN = (PointLaw, GaussianLaw, EquilibriumLaw, DensityLaw, GivenStart)
 
 
 def sample_paths(
-    model: LayDownModel,
+    model: FibreModel,
     n_paths: int,
     s_end: float,
     ds: float,
@@ -51,16 +52,21 @@ def sample_paths(
     progress: bool | ProgressCallback = False,
     memory_limit: int | None = None,
 ) -> Paths:
-    """Paths of dξ = τ(α) ds - dγ, dα = -∇B(ξ)·τ⊥(α) ds + A dW.
+    """Paths of dξ = τ(α) ds - dγ, dα = -∇B(ξ)·τ⊥(α) ds + A dW, or of smooth fibres.
 
-    The splitting T½ R½ D R½ T½ is weakly of order 2; it is exact in the angle for
-    frozen ξ, and safe for A = 0, for any A √ds, and through the kink of B = ‖ξ‖. Path
-    k depends on (seed, k, ds) alone: it is bitwise the same for any number of paths,
-    of threads and of workers, and wherever it is saved.
+    For a `SmoothLayDownModel` they are paths of dα = κ ds,
+    dκ = -(κ + ∇B·τ⊥)/R ds + K dW: a step draws (κ, α, ∫α) from the Gaussian that they
+    have under the force at its middle, which is then corrected; weakly of order 2,
+    uniformly in R, and exact in (α, κ) without potential.
+
+    For a `LayDownModel` the splitting T½ R½ D R½ T½ is weakly of order 2; it is exact
+    in the angle for frozen ξ, and safe for A = 0, for any A √ds, and through the kink
+    of B = ‖ξ‖. Path k depends on (seed, k, ds) alone: it is bitwise the same for any
+    number of paths, of threads and of workers, and wherever it is saved.
 
     Parameters
     ----------
-    model : LayDownModel
+    model : LayDownModel or SmoothLayDownModel
         Any potential and any curve. A potential of the user's own is evaluated by its
         Python functions, the others by compiled code.
     n_paths : int
@@ -70,15 +76,18 @@ def sample_paths(
     seed : int or SeedSequence
     rng : Generator, int or SeedSequence
         Instead of `seed`; a generator gives one number, the seed that is recorded.
-    initial : law or pair of arrays, optional
+    initial : law or arrays, optional
         A law from `fpsolve.paths` (or any object with ``sample(rng, n)``), or arrays of
         shape (n_paths, 2) and (n_paths,) for ξ and α, or one point for all. By default
-        ξ = 0, the point below the nozzle, and a uniform angle.
+        ξ = 0, the point below the nozzle, and a uniform angle. For a smooth model a
+        third array is κ; without it κ has the Gaussian law of variance K²R/2 that it
+        keeps where no force turns the fibre.
     save_at : iterable of float, optional
         Where to keep the paths; by default at the end.
     s_start : float
         Arclength at the start; it matters for curves that turn or swing.
     method : {"splitting", "euler_maruyama", "heun"}
+        For a smooth model "splitting" only.
     histogram : PhaseSpaceGrid, optional
         Count the paths in the cells of this grid at every saved s, while sampling.
     keep : bool
@@ -114,11 +123,11 @@ def sample_paths(
 
     References
     ----------
-    [KMW09]_, section 3.1, equation (6).
+    [KMW09]_, section 3.1, equation (6), and section 3.2, equation (22).
     """
-    check_model(model)
+    check_fibre_model(model)
     n_paths = check_integer("n_paths", n_paths, 1)
-    check_one_of("method", method, METHODS)
+    check_one_of("method", method, integrator_of(model).methods)
     check_histogram(histogram)
     schedule = stepwise(s_start, s_end, ds, save_at)
     model.curve.check_span(schedule.start, schedule.end)
@@ -128,7 +137,7 @@ def sample_paths(
         schedule=schedule,
         seed=seed_number(seed, rng),
         method=method,
-        law=law_of(initial, n_paths),
+        law=law_of(initial, n_paths, isinstance(model, SmoothLayDownModel)),
         keep=check_flag("keep", keep),
         grid=histogram,
     )
@@ -151,36 +160,40 @@ def check_repeats(law: Any) -> None:
     """
     if type(law) in KNOWN:
         return
-    (xi, alpha), (xi_again, alpha_again) = (
+    first, again = (
         checked_sample(law, law.sample(start_generator(0, 0), START_BLOCK))
         for _ in range(2)
     )
-    if not (np.array_equal(xi, xi_again) and np.array_equal(alpha, alpha_again)):
+    if not all(map(np.array_equal, first, again)):
         raise ValueError(
             "`initial` must draw from the generator that it is given and from nothing "
             f"else, got two different samples for the same one from {shown(law)}."
         )
 
 
-def law_of(initial: Any, n_paths: int) -> Any:
-    """The law of the start, from any of the ways to give it."""
+def law_of(initial: Any, n_paths: int, smooth: bool = False) -> Any:
+    """The law of the start, from any of the ways to give it; κ only if `smooth`."""
     if initial is None:
         return PointLaw()
     if hasattr(initial, "sample"):
         check_repeats(initial)
         return initial
-    if not (isinstance(initial, tuple | list) and len(initial) == 2):
+    names = ("xi", "alpha", "kappa") if smooth else ("xi", "alpha")
+    given = isinstance(initial, tuple | list) and len(initial)
+    if given not in {2, len(names)}:
         raise TypeError(
             "`initial` must be a law with a method sample(rng, n), or a pair "
-            f"(xi, alpha), got {shown(initial)}."
+            f"(xi, alpha){', or (xi, alpha, kappa)' if smooth else ''}, got "
+            f"{shown(initial)}."
         )
-    xi, alpha = (check_numbers("initial", points) for points in initial)
-    if xi.shape not in ((2,), (n_paths, 2)):
-        raise GridMismatchError((n_paths, 2), xi.shape, "initial xi")
-    if alpha.shape not in ((), (n_paths,)):
-        raise GridMismatchError((n_paths,), alpha.shape, "initial alpha")
-    points = np.broadcast_to(xi, (n_paths, 2)), np.broadcast_to(alpha, (n_paths,))
-    for name, values in zip(("xi", "alpha"), points, strict=True):
+    points = []
+    for name, values in zip(names, initial, strict=False):
+        shape = (n_paths, 2) if name == "xi" else (n_paths,)
+        array = check_numbers("initial", values)
+        if array.shape not in (shape[1:], shape):
+            raise GridMismatchError(shape, array.shape, f"initial {name}")
+        points.append(np.broadcast_to(array, shape))
+    for name, values in zip(names, points, strict=False):
         if not np.isfinite(values).all():
             index = np.argwhere(~np.isfinite(values))[0]
             raise ValueError(

@@ -8,10 +8,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from fpsolve._kernels.paths import N_STATE
 from fpsolve._support.arrays import Array
 from fpsolve.model.curves.curve import Curve
-from fpsolve.paths.ensemble import Ensemble, angle_of
+from fpsolve.paths.ensemble import KAPPA, Ensemble, angle_of
 
 __all__ = ["Trajectory", "traced", "trajectory"]
 
@@ -31,12 +30,15 @@ class Trajectory:
     alpha : ndarray, shape (n,)
         Continuous along the path.
     curve : Curve
+    kappa : ndarray, shape (n,), or None
+        Curvature of a smooth fibre.
     """
 
     s: Array
     xi: Array = field(repr=False)
     alpha: Array = field(repr=False)
     curve: Curve
+    kappa: Array | None = field(default=None, repr=False)
 
     @property
     def eta(self) -> Array:
@@ -47,7 +49,7 @@ class Trajectory:
 def traced(
     ensemble: Ensemble, first: int, state: Array, sampled: Array | None
 ) -> Iterator[tuple[int, Array]]:
-    """Number of the first step and states (n_steps, 5, n) of some paths, leg by leg.
+    """Number of the first step and states (n_steps, n_state, n) of paths, leg by leg.
 
     The first leg is the start alone. Warns if the end is not the one that was sampled.
 
@@ -56,16 +58,16 @@ def traced(
     ensemble : Ensemble
     first : int
         Number of the first of the paths.
-    state : ndarray, shape (5, n)
+    state : ndarray, shape (n_state, n)
         Where they start; afterwards where they end.
-    sampled : ndarray, shape (5, n), or None
+    sampled : ndarray, shape (n_state, n), or None
         Where they ended when they were sampled.
     """
     step, end, n = 0, ensemble.schedule.n_steps, state.shape[1]
     yield step, state[None].copy()
     while step < end:
         n_steps = min(LEG, end - step)
-        trace = np.empty((n_steps, N_STATE, n))
+        trace = np.empty((n_steps, len(state), n))
         ensemble.integrator.advance(state, first, step, n_steps, trace)
         yield step + 1, trace
         step += n_steps
@@ -100,4 +102,5 @@ def trajectory(
         xi=states[:, :2, 0].copy(),
         alpha=angle_of(states)[:, 0],
         curve=ensemble.model.curve,
+        kappa=states[:, KAPPA, 0].copy() if states.shape[1] > KAPPA else None,
     )

@@ -35,8 +35,8 @@ _AXIS_NAMES = {"xi1": r"$\xi_1$", "xi2": r"$\xi_2$", "alpha": r"$\alpha$"}
 # Shown before others that differ more.
 _FIRST = ("relative_entropy", "mean_xi1", "variance_xi1", "mass")
 # Tables of all kinds of things, and what is shown in panels of its own.
-_NO_LINES = ("density", "cell_mass", "states", "counts", "xi", "tau", "turns", "alpha",
-             "moment_sums")  # fmt: skip
+_NO_LINES = ("density", "cell_mass", "states", "counts", "xi", "tau", "turns", "kappa",
+             "alpha", "moment_sums")  # fmt: skip
 _MOST_LINES, _MOST_ARCLENGTHS, _FEW = 5, 4, 10
 _HEIGHT, _DIFFERENCES = 3.0, "RdBu_r"
 _LINES = ("blue", "vermilion", "green", "purple", "orange", "sky")

@@ -10,6 +10,7 @@ from scipy import stats
 
 from fpsolve._kernels import paths as kernels
 from fpsolve._kernels.compiling import ParallelKernel
+from fpsolve.paths.smooth_step import smooth_step
 
 KERNELS = {
     name: function
@@ -26,6 +27,7 @@ POTENTIALS = [
     (kernels.POWER, 0.9, 2.5),
 ]
 NO_TRACE = np.zeros((0, 5, 0))
+LAW = smooth_step(0.3, 1.2, 0.2)
 
 
 def random_state(n):
@@ -35,10 +37,14 @@ def random_state(n):
     return np.stack([*rng.normal(size=(2, n)), np.cos(angle), np.sin(angle), turns])
 
 
+def random_smooth_state(n):
+    return np.stack([*random_state(n), np.random.default_rng(6).normal(size=n)])
+
+
 def work_array():
     """A work array with a state, normal numbers and forces in its rows."""
     rng = np.random.default_rng(5)
-    w = rng.uniform(0.1, 0.9, kernels.N_ROWS * kernels.LANES)
+    w = rng.uniform(0.1, 0.9, kernels.N_SMOOTH_ROWS * kernels.LANES)
     w[: 5 * kernels.LANES] = random_state(kernels.LANES).ravel()
     return w
 
@@ -78,7 +84,26 @@ def cases():
         "kick_paths": [(0.1, np.array([1.0, -9.0, 0.0]), np.ones((2, n)), state)],
         "rotate_paths": [(np.array([1.0, -9.0, 40.0]), state)],
         "sum_powers": [(random_state(70), np.zeros((2, 19)))],
+        **smooth_cases(w, n, shifts),
     }  # fmt: skip
+
+
+def smooth_cases(w, n, shifts):
+    """Those of the smooth model."""
+    state, rng = random_smooth_state(n), np.random.default_rng(5)
+    numbers, forces = rng.normal(size=(3, n)), rng.normal(size=(2, n))
+    return {
+        "numbers_of_four_steps": [(2**40 + 3, 17, *KEY, w, w.view(np.int64))],
+        "noise_block": [(LAW.noise, kernels.NUMBERS + 3 * kernels.LANES, w)],
+        "turn_block": [(0.2, LAW.weights, LAW.spread, 0.01, -0.02, w)],
+        "load_smooth_block": [(state, 0, n, w)],
+        "store_smooth_block": [(w, 0, n, state)],
+        "advance_smooth_paths": [
+            (7, 2, KEY, LAW, potential, shifts, np.zeros((0, 6, 0)), state)
+            for potential in POTENTIALS
+        ],
+        "turn_paths": [(LAW, numbers, forces, shifts[0, 1], state)],
+    }
 
 
 CASES = cases()
@@ -103,6 +128,7 @@ def test_every_kernel_of_the_sampler_has_a_case():
     assert CASES.keys() == KERNELS.keys()
     assert set(PARALLEL) == {
         "advance_paths", "fill_normals", "kick_paths", "rotate_paths", "sum_powers",
+        "advance_smooth_paths", "turn_paths",
     }  # fmt: skip
 
 

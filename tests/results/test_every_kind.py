@@ -25,6 +25,7 @@ from fpsolve.results.kinds import KINDS, from_xarray, kind_of, named
 QUADRATIC = fp.QuadraticPotential()
 REST = fp.LayDownModel(QUADRATIC, 1.0)
 BELT = fp.LayDownModel(QUADRATIC, 1.0, fp.MovingBelt(0.2))
+SMOOTH = fp.SmoothLayDownModel(QUADRATIC, 0.5, 1.0, fp.MovingBelt(0.2))
 PROCESS = fp.EnergyProcess(QUADRATIC, 0.5)
 LIMIT = fp.HydrodynamicLimit(fp.LayDownModel(QUADRATIC, 2.0, fp.MovingBelt(0.1)))
 OWN_POTENTIAL = fp.IsotropicPotential(lambda r: r**2 / 2, lambda r: r)
@@ -64,6 +65,9 @@ MAKERS = {
         **LENIENT,
     ),
     "paths": lambda: fp.sample_paths(BELT, 40, 0.5, 0.25, seed=3, initial=NARROW),
+    "paths, smooth": lambda: fp.sample_paths(
+        SMOOTH, 40, 0.5, 0.25, seed=3, initial=((0.5, 0.0), 1.0, 0.2)
+    ),
     "hydrodynamic": lambda: hydrodynamic(**SEVERAL),
     "hydrodynamic, plain": hydrodynamic,
     "energy": lambda: energy(**SEVERAL),
