@@ -9,6 +9,7 @@ from .density.checkpoints import Checkpoint as Checkpoint
 from .density.resume import resume as resume
 from .density.schemes import drift_kick as drift_kick
 from .density.schemes import semi_lagrangian as semi_lagrangian
+from .density.schemes import smooth_drift_kick as smooth_drift_kick
 from .density.solution import Solution as Solution
 from .density.solve import solve as solve
 from .density.steady_state import SteadyState as SteadyState
@@ -18,6 +19,7 @@ from .errors import CheckpointError as CheckpointError
 from .errors import CheckpointMismatchError as CheckpointMismatchError
 from .errors import CirculationError as CirculationError
 from .errors import ConfigurationError as ConfigurationError
+from .errors import CurvatureRangeError as CurvatureRangeError
 from .errors import DomainTooSmallError as DomainTooSmallError
 from .errors import EntropyRiseError as EntropyRiseError
 from .errors import FileFormatError as FileFormatError
@@ -37,6 +39,7 @@ from .grids import diagnostics as diagnostics
 from .grids import initial as initial
 from .grids.phase_space import PhaseSpaceGrid as PhaseSpaceGrid
 from .grids.plane import PlaneGrid as PlaneGrid
+from .grids.smooth import SmoothPhaseSpaceGrid as SmoothPhaseSpaceGrid
 from .interop import from_pde_field as from_pde_field
 from .interop import to_pde_field as to_pde_field
 from .model.curves import Curve as Curve

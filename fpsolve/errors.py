@@ -20,6 +20,7 @@ __all__ = [
     "CheckpointMismatchError",
     "CirculationError",
     "ConfigurationError",
+    "CurvatureRangeError",
     "DomainTooSmallError",
     "EntropyRiseError",
     "FileFormatError",
@@ -201,6 +202,27 @@ class DomainTooSmallError(RunError):
             "place": "" if s is None else f" at s = {s:g}",
             "box": f"({', '.join(sides)})" if len(sides) > 1 else sides[0],
         }
+
+
+@stated
+class CurvatureRangeError(RunError):
+    """Too much mass sits at the ends of the range of κ.
+
+    Densities are periodic in κ for the scheme, so what reaches an end comes back at the
+    other and the result is wrong.
+    """
+
+    boundary_mass: float = said(
+        "Share of the mass in the first and the last cells of κ."
+    )
+    kappa_half_width: float = said("Largest curvature of the grid.")
+    s: float = said("Arclength at which it was noticed.")
+    tolerance: float = said("Largest share allowed.")
+    _says = (
+        "boundary mass {boundary_mass:.2g} in κ exceeds tolerance {tolerance:g} at "
+        "s = {s:g}: curvatures up to {kappa_half_width:g} are too few; enlarge "
+        "`kappa_half_width`."
+    )
 
 
 @stated

@@ -6,7 +6,8 @@ import math
 
 import numpy as np
 
-from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.grids.smooth import AnyGrid
+from fpsolve.model.fibre import FibreModel
 from fpsolve.model.laydown import LayDownModel
 from fpsolve.model.potentials.at_points import gradient_at, value_at
 from fpsolve.model.potentials.nodes import GibbsNodes, gibbs_nodes
@@ -56,7 +57,7 @@ def unit_of_nodes(nodes: GibbsNodes) -> float:
     return 4.0 ** round(math.log(deviation, 4.0)) if deviation > 0 else 1.0
 
 
-def mean_square_force(model: LayDownModel, grid: PhaseSpaceGrid) -> float:
+def mean_square_force(model: FibreModel, grid: AnyGrid) -> float:
     """∫ |∇B|² e^{−B} dξ / ∫ e^{−B} dξ on the grid."""
     xi1, xi2 = grid.plane()
     potential = value_at(model.potential, xi1, xi2)

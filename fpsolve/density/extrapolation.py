@@ -8,11 +8,13 @@ from typing import Any
 
 import numpy as np
 
+from fpsolve.density.smooth.lag import allowance, curvature_lag
 from fpsolve.density.solution import Solution
 from fpsolve.evolution.richardson import extrapolated_series, gain_of
 from fpsolve.evolution.series import is_extrapolated
 from fpsolve.evolution.stored import CombinedDensities, LazyDensities
 from fpsolve.grids import diagnostics
+from fpsolve.model.smooth import SmoothLayDownModel
 
 __all__ = ["extrapolated"]
 
@@ -37,7 +39,8 @@ def extrapolated(coarse: Solution, fine: Solution, order: int) -> Solution:
     estimate is the largest within a sixth of the half width of the box, but at the
     start, which both runs share. Out of the
     asymptotic range (A² ds > 5, or a nozzle that turns by more than 3 rad in ds) it is
-    the whole difference, which covers from order one on, and a warning says so.
+    the whole difference, which covers from order one on, and a warning says so. For a
+    smooth fibre see `curvature_lag`.
 
     Parameters
     ----------
@@ -48,6 +51,11 @@ def extrapolated(coarse: Solution, fine: Solution, order: int) -> Solution:
     """
     gain = gain_of(order)
     allowed = gain if _resolved(coarse) else 1.0
+    lag: dict[str, float] = {}
+    model: Any = coarse.model
+    if isinstance(model, SmoothLayDownModel):
+        allowed = max(allowed, allowance(model, coarse.ds, gain))
+        lag = curvature_lag(model, coarse.grid, coarse.ds)
     reach = _WINDOW * min(fine.grid.half_widths)
     series, errors = extrapolated_series(
         fine.series, coarse.series, gain, reach, allowed, is_extrapolated
@@ -57,6 +65,9 @@ def extrapolated(coarse: Solution, fine: Solution, order: int) -> Solution:
         for p, q in zip(fine.densities, coarse.densities, strict=True)
     ]
     errors["density_l1"] = np.array(distances)
+    for name, more in lag.items():
+        where = fine.saved_s if name == "density_l1" else fine.s
+        errors[name] = errors[name] + more * (where > fine.s[0])
     provenance = dict(fine.provenance)
     for name in ("wall_seconds", "cpu_seconds", "n_steps"):
         provenance[name] = fine.provenance[name] + coarse.provenance[name]

@@ -1,6 +1,6 @@
 """How a solution is stored.
 
-Dimensions: `s` (saved densities), `xi1`, `xi2`, `alpha`, and `step` (recorded steps,
+Dimensions: `s` (saved densities), the axes of the grid, and `step` (recorded steps,
 with the coordinate `s_step`).
 """
 
@@ -23,11 +23,9 @@ from fpsolve.evolution.layout import (
 )
 from fpsolve.evolution.parts import SAVED, STATUS, STEP, Model, OnGrid, Recorded
 from fpsolve.evolution.series import DENSITY, START
-from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.grids.dictionaries import grid_from_dict
 
 __all__ = ["SOLUTION", "is_saved"]
-
-_AXES = PhaseSpaceGrid.axes
 
 
 class _Start(Part):
@@ -41,15 +39,17 @@ class _Start(Part):
         p0 = None if is_saved(result) else result.initial_density
         given = {"initial_density": p0, "reference_density": result.reference}
         found = {name: np.asarray(p) for name, p in given.items() if p is not None}
+        axes = result.grid.axes
         return {
-            name: (_AXES[: p.ndim], p, labels(START[name])) for name, p in found.items()
+            name: (axes[: p.ndim], p, labels(START[name])) for name, p in found.items()
         }
 
     def read(self, source: Source) -> dict[str, Any]:
         dataset, found = source.dataset, dict.fromkeys(START)
+        axes = source.fields["grid"].axes
         for name in START:
             if name in dataset:
-                if dataset[name].dims not in (_AXES, _AXES[:2]):
+                if dataset[name].dims not in (axes, axes[:2]):
                     raise ValueError(
                         f"`{name}` must lie on `grid`, got other dimensions"
                     )
@@ -89,7 +89,7 @@ SOLUTION = Layout(
     Attribute("Conventions", values=lambda _: "CF-1.11"),
     Model(),
     SAVED,
-    OnGrid(PhaseSpaceGrid, DENSITY),
+    OnGrid(grid_from_dict, DENSITY),
     Variable("entropy_floor", (), "value that H(p|p_S) tends to on this grid",
              kind=float),
     _Start(),

@@ -75,7 +75,7 @@ class Record:
     @cached_property
     def entropy_dissipation(self) -> float:
         """−dH/ds by the angle alone; NaN where H is."""
-        known, noise = self.recorder, self.recorder.model.noise
+        known, noise = self.recorder, self.recorder.noise
         if known.reference is None or not math.isfinite(self.sums.mass()):
             return math.nan
         if known.inverse is None:
@@ -129,6 +129,8 @@ class Recorder:
         further, or if p_S weighs more than 1.01 on cells that do not resolve it.
     """
 
+    kind_of_record: type[Record] = Record
+
     def __init__(
         self,
         model: LayDownModel,
@@ -137,6 +139,7 @@ class Recorder:
         observed: Sequence[Series] = (),
     ) -> None:
         self.model, self.grid, self.observed = model, grid, observed
+        self.noise = model.noise
         given = reference
         self.falls = reference is None and model.has_equilibrium
         self.lowest = math.inf
@@ -176,7 +179,7 @@ class Recorder:
         told : mapping of float, optional
             What the scheme says of the steps before; each becomes a series.
         """
-        found = Record(self, p, s, told or {})
+        found = self.kind_of_record(self, p, s, told or {})
         values = {}
         for one in (*SERIES.values(), *self.observed):
             value = one.value(found)

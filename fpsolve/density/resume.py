@@ -16,8 +16,8 @@ from fpsolve.density.schemes.scheme import Scheme
 from fpsolve.density.solution import Solution
 from fpsolve.density.solve import solve
 from fpsolve.errors import FileFormatError
-from fpsolve.grids.phase_space import PhaseSpaceGrid
-from fpsolve.model.laydown import LayDownModel
+from fpsolve.grids.dictionaries import grid_from_dict
+from fpsolve.model.reading import model_from_dict
 
 __all__ = ["resume"]
 
@@ -84,8 +84,8 @@ def resume(
 
 def _scheme(about: Mapping[str, Any]) -> Scheme:
     """The scheme with its model and grid; ValueError if one is a user's own code."""
-    model = LayDownModel.from_dict(about["model"]["$model"])
-    grid = PhaseSpaceGrid.from_dict(about["grid"]["$grid"])
+    model = model_from_dict(about["model"]["$model"])
+    grid = grid_from_dict(about["grid"]["$grid"])
     return scheme_from_dict(about["scheme"], model, grid)
 
 

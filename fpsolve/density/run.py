@@ -12,9 +12,9 @@ from fpsolve._support.arrays import Array
 from fpsolve._support.progress import ProgressCallback
 from fpsolve._support.provenance import Stopwatch
 from fpsolve.density.keeper import MemoryKeeper, Snapshot, fields_of
-from fpsolve.density.recorder import Recorder
 from fpsolve.density.schemes.dictionaries import describe_scheme
 from fpsolve.density.schemes.scheme import Scheme
+from fpsolve.density.smooth.recorder import recorder_for
 from fpsolve.density.solution import Solution
 from fpsolve.density.tolerances import Tolerances, check_finite, check_record
 from fpsolve.errors import RunError, RunInterrupted
@@ -53,7 +53,7 @@ class Run:
         self.scheme, self.schedule, self.keeper = scheme, schedule, keeper
         self.tolerances, self.saves = tolerances, frozenset(schedule.saves)
         self.p0, self.reference, self.call = p0, reference, call
-        self.recorder = Recorder(scheme.model, scheme.grid, reference, observed)
+        self.recorder = recorder_for(scheme, reference, observed)
         self.state = scheme.start(p0)
         self.step, self.settled = 0, False
         self.watch = Stopwatch()

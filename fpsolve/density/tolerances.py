@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +15,7 @@ from fpsolve.density.schemes.form import State
 from fpsolve.density.schemes.scheme import Scheme
 from fpsolve.errors import (
     CirculationError,
+    CurvatureRangeError,
     DomainTooSmallError,
     EntropyRiseError,
     MassDriftError,
@@ -79,6 +81,10 @@ def check_record(
     boundary = values["boundary_mass"]
     if not boundary <= allowed.boundary:
         raise DomainTooSmallError(boundary, scheme.grid.half_width, s, allowed.boundary)
+    at_ends = values.get("kappa_boundary_mass", 0.0)
+    if not at_ends <= allowed.boundary:
+        grid: Any = scheme.grid
+        raise CurvatureRangeError(at_ends, grid.kappa_half_width, s, allowed.boundary)
     _check_laws(values, allowed)
 
 

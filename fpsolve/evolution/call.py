@@ -17,7 +17,7 @@ from fpsolve._support.digests import digest_of
 from fpsolve._support.labels import labels, to_json
 from fpsolve._support.provenance import Stopwatch
 from fpsolve.errors import RunError, RunInterrupted
-from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.grids.cells import CellGrid
 from fpsolve.grids.plane import PlaneGrid
 from fpsolve.model.fibre import FibreModel
 from fpsolve.model.identity.digests import digest_or_none
@@ -164,7 +164,7 @@ def described(value: Any, name: str, arrays: Arrays) -> Any:
         return {"$potential": potential_to_dict(value)}
     if isinstance(value, FibreModel):
         return {"$model": value.to_dict()}
-    if isinstance(value, PhaseSpaceGrid | PlaneGrid):
+    if isinstance(value, CellGrid):
         kind = "plane" if isinstance(value, PlaneGrid) else "grid"
         return {f"${kind}": value.to_dict()}
     if isinstance(value, np.random.SeedSequence):

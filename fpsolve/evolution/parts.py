@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -99,9 +99,9 @@ class OnGrid(Part):
 
     Attributes
     ----------
-    grid : type
-        With the names of its `axes`, their centres by these names, `shape`, `to_dict`
-        and `from_dict`.
+    read_grid : callable
+        Makes the grid of what its `to_dict` gave. It has the names of its `axes`, their
+        centres by these names, and a `shape`.
     words : str
         Long name of the densities.
     field : str
@@ -110,7 +110,7 @@ class OnGrid(Part):
         Dimensions before those of the grid.
     """
 
-    grid: Any
+    read_grid: Callable[[Mapping[str, Any]], Any]
     words: str
     field: str = "densities"
     over: tuple[str, ...] = ("s",)
@@ -120,7 +120,7 @@ class OnGrid(Part):
     def write(self, result: Any) -> Stored:
         """The grid, its centres, and the densities, which share their memory."""
         densities = np.asarray(getattr(result, self.field))
-        axes = self.grid.axes
+        axes = result.grid.axes
         centres = {
             name: (name, getattr(result.grid, name),
                    labels(COORDINATES.get(name, name)))
@@ -134,7 +134,7 @@ class OnGrid(Part):
 
     def read(self, source: Source) -> dict[str, Any]:
         """The grid and the densities; both must fit, and the centres to the grid."""
-        grid = self.grid.from_dict(source.about["grid"])
+        grid = self.read_grid(source.about["grid"])
         self._check(source.dataset, grid)
         return {"grid": grid, self.field: source.dataset["density"].values}
 

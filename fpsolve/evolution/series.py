@@ -29,6 +29,7 @@ COORDINATES = {
     "xi1": "deviation ξ₁ along the belt",
     "xi2": "deviation ξ₂ across the belt",
     "alpha": "angle α in radians",
+    "kappa": "curvature κ",
 }
 
 
@@ -56,7 +57,7 @@ class Series:
 
 
 def _moment(name: str, words: str) -> Series:
-    return Series(name, words, lambda record: float(record.moments[name]))
+    return Series(name, words, lambda record: record.moments.get(name))
 
 
 # Every series of a solution, in the order of its record.
@@ -74,6 +75,9 @@ SERIES = {one.name: one for one in (
            lambda record: record.sums.negative_mass(), approximates=False),
     Series("boundary_mass", "mass in the cells at the boundary of the box",
            lambda record: record.boundary_mass, approximates=False),
+    Series("kappa_boundary_mass", "mass in the cells at the ends of κ",
+           lambda record: getattr(record, "kappa_boundary_mass", None),
+           approximates=False),
     Series("mass_correction", "relative mass error removed",
            lambda record: record.report.get("mass_correction"), approximates=False),
     Series("theta", "weight θ of the adjusted advection",
@@ -85,6 +89,8 @@ SERIES = {one.name: one for one in (
     _moment("covariance", "covariance Cov(ξ₁, ξ₂)"),
     _moment("mean_cos_alpha", "mean E cos α"),
     _moment("mean_sin_alpha", "mean E sin α"),
+    _moment("mean_kappa", "mean E κ of the curvature"),
+    _moment("mean_kappa2", "mean E κ² of the squared curvature"),
     Series("entropy_rise", "rise of H(p|p_S) above its smallest value so far",
            lambda record: record.entropy_rise, approximates=False),
     Series("circulation", "circulation E G relative to the largest G",

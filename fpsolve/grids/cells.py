@@ -6,7 +6,7 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from functools import cached_property
-from typing import Any, Self
+from typing import Any, ClassVar, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -20,7 +20,6 @@ __all__ = ["CellGrid", "cell_centres", "checked_half_width"]
 
 # Half widths beyond this range overflow or underflow in moments.
 _NARROWEST = 1e-30
-_ARGUMENTS = ("xi1", "xi2", "alpha")
 
 
 class CellGrid(ABC):
@@ -32,6 +31,7 @@ class CellGrid(ABC):
 
     half_width: float | tuple[float, float]
     shape: tuple[int, ...]
+    axes: ClassVar[tuple[str, ...]]
 
     @property
     @abstractmethod
@@ -107,7 +107,7 @@ class CellGrid(ABC):
         GridMismatchError
             If they do not broadcast to the shape of the grid.
         """
-        check_call("f", f, f"f({', '.join(_ARGUMENTS[: len(self.shape)])})")
+        check_call("f", f, f"f({', '.join(self.axes)})")
         values = np.asarray(f(*self.mesh()))
         if values.dtype.kind not in "fiub":
             raise TypeError(f"`f` must return real numbers, got {values.dtype}.")

@@ -12,6 +12,8 @@ from fpsolve._support.checks import check_non_negative, check_one_of
 from fpsolve.errors import GridMismatchError
 from fpsolve.grids.phase_space import PhaseSpaceGrid, check_grid
 from fpsolve.grids.row_sums import SMALLEST, RowFunctionals, inverse_of
+from fpsolve.grids.smooth import AnyGrid, SmoothPhaseSpaceGrid
+from fpsolve.grids.smooth_sums import SmoothFunctionals
 
 __all__ = [
     "boundary_mass",
@@ -32,18 +34,18 @@ DIFFERENCE = (1225 / 1024, -245 / 3072, 49 / 5120, -5 / 7168)
 MIDPOINT = (1225 / 2048, -245 / 2048, 49 / 2048, -5 / 2048)
 
 
-def mass(p: Array, grid: PhaseSpaceGrid) -> float:
+def mass(p: Array, grid: AnyGrid) -> float:
     """∫ p dξ dα by the midpoint rule, one for a probability density.
 
     Parameters
     ----------
     p : ndarray, shape (n1, n2, n_alpha)
-    grid : PhaseSpaceGrid
+    grid : PhaseSpaceGrid or SmoothPhaseSpaceGrid
     """
     return float(checked(p, grid).sum()) * grid.cell_volume
 
 
-def boundary_mass(p: Array, grid: PhaseSpaceGrid) -> float:
+def boundary_mass(p: Array, grid: AnyGrid) -> float:
     """Share of ∫ |p| dξ dα in the outermost layer of cells of the ξ box.
 
     The box is periodic, so what arrives there re-enters on the other side: a run is
@@ -52,9 +54,10 @@ def boundary_mass(p: Array, grid: PhaseSpaceGrid) -> float:
     Parameters
     ----------
     p : ndarray, shape (n1, n2, n_alpha)
-    grid : PhaseSpaceGrid
+    grid : PhaseSpaceGrid or SmoothPhaseSpaceGrid
     """
-    return ring_share(np.abs(checked(p, grid)).sum(axis=2))
+    p = checked(p, grid)
+    return ring_share(np.abs(p).sum(axis=tuple(range(2, p.ndim))))
 
 
 def ring_share(plane: Array) -> float:
@@ -64,62 +67,63 @@ def ring_share(plane: Array) -> float:
     return float((sides + ends) / plane.sum())
 
 
-def negative_mass(p: Array, grid: PhaseSpaceGrid) -> float:
+def negative_mass(p: Array, grid: AnyGrid) -> float:
     """∫ max(−p, 0) dξ dα: how much of a density is unphysical undershoot.
 
     Parameters
     ----------
     p : ndarray, shape (n1, n2, n_alpha)
-    grid : PhaseSpaceGrid
+    grid : PhaseSpaceGrid or SmoothPhaseSpaceGrid
     """
     return float(np.maximum(-checked(p, grid), 0.0).sum()) * grid.cell_volume
 
 
-def marginal(p: Array, grid: PhaseSpaceGrid, which: str = "xi") -> Array:
+def marginal(p: Array, grid: AnyGrid, which: str = "xi") -> Array:
     """∫ p over the other variables, a density of those that are named.
 
     Parameters
     ----------
     p : ndarray, shape (n1, n2, n_alpha)
-    grid : PhaseSpaceGrid
+    grid : PhaseSpaceGrid or SmoothPhaseSpaceGrid
     which : str
-        "xi", "alpha", "xi1" or "xi2".
+        "xi", "alpha", "xi1" or "xi2"; on a grid with a curvature "kappa" and
+        "xi_alpha" as well.
 
     Returns
     -------
-    ndarray, shape (n1, n2), (n_alpha,), (n1,) or (n2,)
+    ndarray, shape (n1, n2), (n_alpha,), (n1,) or (n2,); (n_kappa,), (n1, n2, n_alpha)
     """
-    d1, d2, d_alpha = grid.spacing
-    integrals = {
-        "xi": ((2,), d_alpha),
-        "alpha": ((0, 1), d1 * d2),
-        "xi1": ((1, 2), d2 * d_alpha),
-        "xi2": ((0, 2), d1 * d_alpha),
-    }
-    check_one_of("which", which, integrals)
-    axes, measure = integrals[which]
-    result: Array = checked(p, grid).sum(axis=axes) * measure
+    p, numbers = checked(p, grid), range(len(grid.shape))
+    kept = {"xi": (0, 1), "alpha": (2,), "xi1": (0,), "xi2": (1,)}
+    if len(grid.shape) > 3:
+        kept |= {"kappa": (3,), "xi_alpha": (0, 1, 2)}
+    check_one_of("which", which, kept)
+    axes = tuple(at for at in numbers if at not in kept[which])
+    result: Array = p.sum(axis=axes) * math.prod(grid.spacing[at] for at in axes)
     return result
 
 
-def moments(p: Array, grid: PhaseSpaceGrid) -> dict[str, float]:
+def moments(p: Array, grid: AnyGrid) -> dict[str, float]:
     """E ξ, the covariance of ξ, E cos α and E sin α, of the normalised density.
 
     Parameters
     ----------
     p : ndarray, shape (n1, n2, n_alpha)
-    grid : PhaseSpaceGrid
+    grid : PhaseSpaceGrid or SmoothPhaseSpaceGrid
 
     Returns
     -------
     dict of str to float
         mean_xi1, mean_xi2, variance_xi1, variance_xi2, covariance, mean_cos_alpha and
-        mean_sin_alpha.
+        mean_sin_alpha; on a grid with a curvature mean_kappa and mean_kappa2 as well.
     """
-    return RowFunctionals(checked(p, grid), grid).moments()
+    p = checked(p, grid)
+    if isinstance(grid, SmoothPhaseSpaceGrid):
+        return SmoothFunctionals(p, grid).moments()
+    return RowFunctionals(p, grid).moments()
 
 
-def relative_entropy(p: Array, grid: PhaseSpaceGrid, reference: Array) -> float:
+def relative_entropy(p: Array, grid: AnyGrid, reference: Array) -> float:
     """H(p|r) = ∫ p ln(p/r) dξ dα (11), natural logarithm.
 
     Computed as ∫ p ln(p/r′) + M ln(M/S), where r′ = r M/S has the mass M of p on this
@@ -131,7 +135,7 @@ def relative_entropy(p: Array, grid: PhaseSpaceGrid, reference: Array) -> float:
     Parameters
     ----------
     p : ndarray, shape (n1, n2, n_alpha)
-    grid : PhaseSpaceGrid
+    grid : PhaseSpaceGrid or SmoothPhaseSpaceGrid
     reference : ndarray, shape (n1, n2) or (n1, n2, n_alpha)
         Usually p_S = `model.equilibrium(*grid.plane())`, normalised on R² × [0, 2π).
 
@@ -145,11 +149,17 @@ def relative_entropy(p: Array, grid: PhaseSpaceGrid, reference: Array) -> float:
     if not ratio > 0:
         # No entropy without mass; the run's own checks say what went wrong.
         return math.nan
-    if reference.shape[2] == 1:
+    if isinstance(grid, PhaseSpaceGrid) and reference.shape[2] == 1:
         inverse = inverse_of(reference[:, :, 0], ratio)
         return RowFunctionals(p, grid, inverse).relative_entropy(ratio)
+    p, reference = rows_of(p), rows_of(reference)
     total = sum(entropy_of_slab(p[k], reference[k] * ratio) for k in slabs(grid))
     return (total + float(masses[0]) * math.log(ratio)) * grid.cell_volume
+
+
+def rows_of(p: Array) -> Array:
+    """p with all coordinates but ξ as one axis."""
+    return p.reshape(*p.shape[:2], -1)
 
 
 def entropy_of_slab(p: Array, reference: Array) -> float:
@@ -161,9 +171,7 @@ def entropy_of_slab(p: Array, reference: Array) -> float:
     return float(positive - p.sum() + reference.sum())
 
 
-def entropy_floor(
-    grid: PhaseSpaceGrid, reference: Array, total_mass: float = 1.0
-) -> float:
+def entropy_floor(grid: AnyGrid, reference: Array, total_mass: float = 1.0) -> float:
     """M ln(M/S): the entropy of the reference's own restriction to the grid.
 
     S is the mass of the reference on this grid; it differs from 1 by what the box
@@ -171,7 +179,7 @@ def entropy_floor(
 
     Parameters
     ----------
-    grid : PhaseSpaceGrid
+    grid : PhaseSpaceGrid or SmoothPhaseSpaceGrid
     reference : ndarray, shape (n1, n2) or (n1, n2, n_alpha)
     total_mass : float
         M, the mass of the density.
@@ -182,17 +190,18 @@ def entropy_floor(
 
 
 def entropy_dissipation(
-    p: Array, grid: PhaseSpaceGrid, noise: float, reference: Array | None = None
+    p: Array, grid: AnyGrid, noise: float, reference: Array | None = None
 ) -> float:
     """(A²/2) ∫ p (∂_α ln(p/r))² dξ dα = −dH/ds, of order 8 in Δα.
 
     Written as 2A² ∫ r (∂_α √(p/r))², which needs no logarithm and no division by p.
-    A reference that does not depend on α (the default) drops out.
+    A reference that does not depend on α (the default) drops out. On a grid with a
+    curvature it is κ in the place of α, with the noise K.
 
     Parameters
     ----------
     p : ndarray, shape (n1, n2, n_alpha)
-    grid : PhaseSpaceGrid
+    grid : PhaseSpaceGrid or SmoothPhaseSpaceGrid
     noise : float
         A.
     reference : ndarray, shape (n1, n2) or (n1, n2, n_alpha), optional
@@ -203,40 +212,48 @@ def entropy_dissipation(
     [KMW09]_, remark 3.2.
     """
     p, noise = checked(p, grid), check_non_negative("noise", noise)
-    if reference is None or as_field(reference, grid).shape[2] == 1:
+    if isinstance(grid, PhaseSpaceGrid) and (
+        reference is None or as_field(reference, grid).shape[2] == 1
+    ):
         return RowFunctionals(p, grid).entropy_dissipation(noise)
+    if reference is None:
+        raise ValueError(
+            "`reference` must be given on a grid with a curvature, got None; no "
+            "stationary density is free of κ."
+        )
     root = np.sqrt(np.maximum(p, 0.0) / np.maximum(reference, SMALLEST))
     slope, weight = staggered(root, DIFFERENCE, -1.0), staggered(reference, MIDPOINT, 1)
-    total = float((weight * slope**2).sum()) / grid.spacing[2] ** 2
+    total = float((weight * slope**2).sum()) / grid.spacing[-1] ** 2
     return 2.0 * noise**2 * total * grid.cell_volume
 
 
 def staggered(q: Array, weights: tuple[float, ...], sign: float) -> Array:
-    """Σ_j w_j (q[k+1+j] + sign · q[k−j]) along the angle, periodic."""
+    """Σ_j w_j (q[k+1+j] + sign · q[k−j]) along the last axis, periodic."""
     total = np.zeros_like(q)
     for j, weight in enumerate(weights):
-        total += weight * (np.roll(q, -1 - j, axis=2) + sign * np.roll(q, j, axis=2))
+        total += weight * (np.roll(q, -1 - j, axis=-1) + sign * np.roll(q, j, axis=-1))
     return total
 
 
-def l1_distance(p: Array, q: Array, grid: PhaseSpaceGrid) -> float:
+def l1_distance(p: Array, q: Array, grid: AnyGrid) -> float:
     """∫ |p − q| dξ dα by the midpoint rule.
 
     Parameters
     ----------
     p, q : ndarray, shape (n1, n2, n_alpha)
-    grid : PhaseSpaceGrid
+    grid : PhaseSpaceGrid or SmoothPhaseSpaceGrid
     """
     return float(np.abs(checked(p, grid) - q).sum()) * grid.cell_volume
 
 
-def checked(p: Array, grid: PhaseSpaceGrid) -> Array:
+def checked(p: Array, grid: AnyGrid) -> Array:
     """The density, of the shape of the grid; NaN in it shows in what is read off."""
-    check_grid(grid)
+    if not isinstance(grid, SmoothPhaseSpaceGrid):
+        check_grid(grid)
     return grid.check(p)
 
 
-def checked_reference(reference: Array, grid: PhaseSpaceGrid) -> Array:
+def checked_reference(reference: Array, grid: AnyGrid) -> Array:
     """A reference that is finite, not negative and has mass, as (n1, n2, …)."""
     reference = check_finite_numbers("reference", reference)
     as_field(reference, grid)
@@ -249,8 +266,10 @@ def checked_reference(reference: Array, grid: PhaseSpaceGrid) -> Array:
     return reference
 
 
-def as_field(reference: Array, grid: PhaseSpaceGrid) -> Array:
-    """A reference as (n1, n2, 1) or (n1, n2, n_alpha)."""
+def as_field(reference: Array, grid: AnyGrid) -> Array:
+    """A reference as (n1, n2, 1) or (n1, n2, n_alpha); with a curvature in full."""
+    if isinstance(grid, SmoothPhaseSpaceGrid):
+        return grid.check(reference, "reference")
     check_grid(grid)
     reference = check_numbers("reference", reference)
     if reference.shape == grid.shape[:2]:
@@ -260,15 +279,15 @@ def as_field(reference: Array, grid: PhaseSpaceGrid) -> Array:
     return reference
 
 
-def reference_sum(reference: Array, grid: PhaseSpaceGrid) -> float:
+def reference_sum(reference: Array, grid: AnyGrid) -> float:
     """Sum of a reference over all cells of the grid."""
     repeats = grid.shape[2] // reference.shape[2]
     return float(reference.sum()) * float(repeats)
 
 
-def slabs(grid: PhaseSpaceGrid) -> Iterator[slice]:
+def slabs(grid: AnyGrid) -> Iterator[slice]:
     """Blocks of planes small enough for the cache."""
-    n1, n2, n_alpha = grid.shape
-    planes = max(1, CELLS_PER_SLAB // (n2 * n_alpha))
-    for start in range(0, n1, planes):
-        yield slice(start, min(start + planes, n1))
+    n1, *others = grid.shape
+    n_planes = max(1, CELLS_PER_SLAB // math.prod(others))
+    for start in range(0, n1, n_planes):
+        yield slice(start, min(start + n_planes, n1))

@@ -18,13 +18,15 @@ from fpsolve._support.checks import (
     check_kind,
     check_non_negative,
     check_pair,
+    check_positive,
     shown,
 )
 from fpsolve.grids.phase_space import PhaseSpaceGrid, check_grid
+from fpsolve.grids.smooth import AnyGrid, SmoothPhaseSpaceGrid, check_smooth_grid
 from fpsolve.model.potentials.at_points import value_at
 from fpsolve.model.potentials.potential import Potential
 
-__all__ = ["equilibrium", "from_function", "gaussian"]
+__all__ = ["equilibrium", "from_function", "gaussian", "with_curvature"]
 
 # A sampled Gaussian misses its mass by more than this when it is cut by the box or
 # narrower than about half a cell; the initial density is then not what was asked for.
@@ -158,7 +160,53 @@ def from_function(
     return _normalised(grid, p)
 
 
-def _normalised(grid: PhaseSpaceGrid, p: NDArray[np.float64]) -> NDArray[np.float64]:
+def with_curvature(
+    p: ArrayLike, grid: SmoothPhaseSpaceGrid, variance: float
+) -> NDArray[np.float64]:
+    """p0(ξ, α, κ) ∝ p(ξ, α) exp(-κ²/2C): a start of a smooth fibre from a basic one.
+
+    With C = K²R/2 = A²/(2R), `SmoothLayDownModel.curvature_variance`, it is the law of
+    the curvature without a force. The mass on the grid is 1 to rounding.
+
+    Parameters
+    ----------
+    p : array_like, shape (n1, n2, n_alpha)
+        Density of (ξ, α), on ``grid.phase_space``.
+    grid : SmoothPhaseSpaceGrid
+    variance : float
+        C.
+
+    Returns
+    -------
+    ndarray, shape ``grid.shape``
+
+    Raises
+    ------
+    ValueError
+        If the variance is not positive, or the curvatures of the grid leave nothing.
+    GridMismatchError
+        If `p` is not on the cells of the grid.
+
+    Warns
+    -----
+    UserWarning
+        If 1 % of the Gaussian is cut by the grid or lost between its cells.
+    """
+    check_smooth_grid(grid)
+    p = grid.phase_space.check(p)
+    variance = check_positive("variance", variance)
+    scale = math.sqrt(2 * math.pi * variance) / grid.spacing[3]
+    share = np.exp(-0.5 * np.square(grid.kappa) / variance) / scale
+    _warn_when_badly_sampled(grid, float(share.sum()))
+    if not share.sum() > 0:
+        raise ValueError(
+            f"`variance` must leave mass on the curvatures of the grid, got "
+            f"{variance:g} with cells of {grid.spacing[3]:g}; take more of them."
+        )
+    return _normalised(grid, p[..., None] * share)
+
+
+def _normalised(grid: AnyGrid, p: NDArray[np.float64]) -> NDArray[np.float64]:
     scale: NDArray[np.float64] = p / (float(p.sum()) * grid.cell_volume)
     return np.ascontiguousarray(scale)
 
@@ -215,16 +263,22 @@ def checked_covariance(variance: ArrayLike) -> NDArray[np.float64]:
     return matrix
 
 
-def _warn_when_badly_sampled(grid: PhaseSpaceGrid, mass: float) -> None:
+def _warn_when_badly_sampled(grid: AnyGrid, mass: float) -> None:
     if not abs(mass - 1) <= _MASS_ERROR:
         warnings.warn(
             f"the sampled Gaussian had mass {mass:.3g} before normalisation: it is cut "
-            f"by the box of half widths {grid.half_widths} or too narrow for cells of "
+            f"by the box of half widths {_widths(grid)} or too narrow for cells of "
             f"{_cells_text(grid)}; enlarge `half_width` or refine `shape`.",
             UserWarning,
             stacklevel=3,
         )
 
 
-def _cells_text(grid: PhaseSpaceGrid) -> str:
+def _cells_text(grid: AnyGrid) -> str:
     return str(tuple(round(step, 4) for step in grid.spacing))
+
+
+def _widths(grid: AnyGrid) -> tuple[float, ...]:
+    if isinstance(grid, SmoothPhaseSpaceGrid):
+        return (*grid.half_widths, grid.kappa_half_width)
+    return grid.half_widths

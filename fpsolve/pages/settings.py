@@ -7,6 +7,7 @@ import warnings
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
+from fpsolve.grids.smooth import AnyGrid, SmoothPhaseSpaceGrid
 from fpsolve.pages.blocks import Block, Equation, Facts, Notice, Part
 from fpsolve.pages.equations import (
     energy_equations,
@@ -16,7 +17,6 @@ from fpsolve.pages.equations import (
 from fpsolve.pages.numbers import assigned
 
 if TYPE_CHECKING:
-    from fpsolve.grids.phase_space import PhaseSpaceGrid
     from fpsolve.model.curves.curve import Curve
     from fpsolve.model.fibre import FibreModel
     from fpsolve.model.process import Process
@@ -46,13 +46,16 @@ def curve_text(curve: Curve) -> str:
     return f"γ(s) = {curve.formula}, mean belt speed v = {curve.speed:g}"
 
 
-def grid_text(grid: PhaseSpaceGrid) -> str:
+def grid_text(grid: AnyGrid) -> str:
     """Return numbers of cells, box and cell widths."""
     cells = " × ".join(map(str, grid.shape))
-    (width1, width2), (d1, d2, turn) = grid.half_widths, grid.spacing
+    (width1, width2), (d1, d2, turn, *bend) = grid.half_widths, grid.spacing
+    curved, by = "", ""
+    if isinstance(grid, SmoothPhaseSpaceGrid):
+        curved, by = f", |κ| < {grid.kappa_half_width:g}", f" by {bend[0]:.4g}"
     return (
-        f"{cells} cells, |ξ₁| < {width1:g}, |ξ₂| < {width2:g}; cells of {d1:.4g} by "
-        f"{d2:.4g} by {turn:.4g} rad"
+        f"{cells} cells, |ξ₁| < {width1:g}, |ξ₂| < {width2:g}{curved}; cells of "
+        f"{d1:.4g} by {d2:.4g} by {turn:.4g} rad{by}"
     )
 
 

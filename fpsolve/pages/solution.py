@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fpsolve.evolution.series import is_extrapolated
+from fpsolve.model.smooth import SmoothLayDownModel
 from fpsolve.pages.blocks import Block, Facts, Notice, Paragraph, Part, Section, Table
 from fpsolve.pages.equations import model_equations
 from fpsolve.pages.figures import drawings
@@ -31,6 +32,7 @@ from fpsolve.pages.settings import (
 
 if TYPE_CHECKING:
     from fpsolve.density.solution import Solution
+    from fpsolve.model.fibre import FibreModel
     from fpsolve.model.process import Process
 
 __all__ = ["accuracy_lines", "section", "series_columns"]
@@ -69,6 +71,9 @@ def series_columns(solution: Solution) -> dict[str, list[str]]:
         "mass error": formatted((mass / mass[:1] - 1)[rows], ".1e"),
         "boundary mass": formatted(series["boundary_mass"][rows], ".1e"),
     }
+    if "kappa_boundary_mass" in series:
+        at_ends = formatted(series["kappa_boundary_mass"][rows], ".1e")
+        columns["at the ends of κ"] = at_ends
     return columns
 
 
@@ -125,7 +130,8 @@ def _parameters(solution: Solution) -> list[tuple[str, str]]:
     if model is not None:
         items += [
             ("potential", f"B = {model.potential.formula}"),
-            ("noise", f"A = {model.noise:g}, A²/2 = {model.diffusivity:g}"),
+            ("noise", f"A = {model.noise:g}, A²/2 = {0.5 * model.noise**2:g}"),
+            ("relaxation length", _relaxation(model)),
             ("reference curve", curve_text(model.curve)),
         ]
     items += [
@@ -136,6 +142,13 @@ def _parameters(solution: Solution) -> list[tuple[str, str]]:
         ("saved", f"{solution.saved_s.size} densities"),
     ]
     return [item for item in items if item[1]]
+
+
+def _relaxation(model: FibreModel) -> str:
+    if not isinstance(model, SmoothLayDownModel):
+        return ""
+    length, noise = model.relaxation_length, model.curvature_noise
+    return f"R = {length:g}, K = A/R = {noise:g}, K²R/2 = {model.curvature_variance:g}"
 
 
 def _scheme(scheme: dict[str, Any]) -> str:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fpsolve._support.arrays import Array
+from fpsolve.model.laydown import LayDownModel
 from fpsolve.plotting.style import DENSITY_MAP, show_frame
 
 if TYPE_CHECKING:
@@ -15,9 +16,9 @@ if TYPE_CHECKING:
     from matplotlib.colors import Normalize
     from matplotlib.figure import FigureBase
 
-    from fpsolve.grids.phase_space import PhaseSpaceGrid
     from fpsolve.grids.plane import PlaneGrid
-    from fpsolve.model.laydown import LayDownModel
+    from fpsolve.grids.smooth import AnyGrid
+    from fpsolve.model.fibre import FibreModel
 
 __all__ = [
     "N_MAPS",
@@ -47,7 +48,7 @@ _MASS_OUTSIDE = 1e-3
 
 def draw_map(
     axes: Axes,
-    grid: PhaseSpaceGrid | PlaneGrid,
+    grid: AnyGrid | PlaneGrid,
     values: Array,
     scale: Normalize,
     stationary: Array | None,
@@ -68,22 +69,22 @@ def draw_map(
 
 
 def draw_density(
-    grid: PhaseSpaceGrid,
-    model: LayDownModel | None,
+    grid: AnyGrid,
+    model: FibreModel | None,
     axes: Axes,
     values: Array,
     scale: Normalize,
 ) -> Any:
     """Draw one ξ marginal and the contours of p_S; return the image."""
     stationary = None
-    if model is not None and model.potential.normalisable:
+    if isinstance(model, LayDownModel) and model.potential.normalisable:
         stationary = np.broadcast_to(model.equilibrium(*grid.plane()), values.shape)
     show_frame(axes)
     return draw_map(axes, grid, values, scale, stationary)
 
 
 def draw_plane(
-    axes: Axes, grid: PhaseSpaceGrid, model: LayDownModel | None, maps: list[Array]
+    axes: Axes, grid: AnyGrid, model: FibreModel | None, maps: list[Array]
 ) -> Any:
     """Draw the first of some ξ marginals, at the scale of all; return the image."""
     image = draw_density(grid, model, axes, maps[0], colour_scale(maps))
@@ -95,7 +96,7 @@ def draw_plane(
 
 def draw_row(
     figure: FigureBase,
-    grid: PhaseSpaceGrid | PlaneGrid,
+    grid: AnyGrid | PlaneGrid,
     maps: Mapping[float, Array],
     draw: Callable[[Axes, Array, Normalize], Any],
 ) -> Any:
@@ -136,9 +137,7 @@ def enclosing_levels(density: Array) -> list[float]:
     return [float(descending[place]) for place in reversed(places)]
 
 
-def visible_region(
-    grid: PhaseSpaceGrid | PlaneGrid, maps: list[Array]
-) -> tuple[float, float]:
+def visible_region(grid: AnyGrid | PlaneGrid, maps: list[Array]) -> tuple[float, float]:
     """Return half widths of a window with all but 0.1 % of the mass of every map."""
     widths = []
     for axis, cells in enumerate((grid.xi1, grid.xi2)):

@@ -42,7 +42,8 @@ class Toy(Evolution):
 
     kind: ClassVar[str] = "toy"
     layout: ClassVar[Layout] = Layout(
-        "Toy", SAVED, OnGrid(Curvatures, "density of κ"), Recorded(), STEP, STATUS,
+        "Toy", SAVED, OnGrid(Curvatures.from_dict, "density of κ"), Recorded(),
+        STEP, STATUS,
         Variable("peak", (), "largest value", kind=float, optional=True),
         Variable("mean", ("s",), "mean of p", values=lambda toy: toy.densities.mean(1)),
         Attribute("method", optional=True),

@@ -36,6 +36,11 @@ EXAMPLES = [
         "(6, 5) is too small; enlarge `half_width`.",
     ),
     (
+        errors.CurvatureRangeError(0.02, 6.0, 1.0, 1e-3),
+        "boundary mass 0.02 in κ exceeds tolerance 0.001 at s = 1: curvatures up to 6 "
+        "are too few; enlarge `kappa_half_width`.",
+    ),
+    (
         errors.MassCorrectionError(s=0.1, theta=-15.0, step=3),
         "adjusted-advection weight theta = -15 outside [0, 1] at s = 0.1 (step 3); "
         "refine the grid, raise `interpolation_order`, or enlarge `ds`: moving feet by "

@@ -31,7 +31,8 @@ def test_every_kernel_has_a_case():
     assert set(PARALLEL) == {
         "interpolate_at_feet", "interpolate_at_perturbed_feet", "blend",
         "row_functionals", "row_sums", "scale_rows", "rotate", "rotation_matrices",
-        "translate", "translate_positive", "solve_rows",
+        "translate", "translate_positive", "solve_rows", "kick", "mix",
+        "curvature_sums",
     }  # fmt: skip
 
 

@@ -36,6 +36,29 @@ class Arguments:
     def normal(self, *shape):
         return self.rng.normal(size=shape)
 
+    def smooth_cases(self):
+        """Kernels of the curvature, for an even and an odd number of modes in it."""
+        n_rows, n = self.n1 * self.n2, self.n
+        force = self.normal(2, n_rows)
+        waves = np.cos(self.grid.alpha), np.sin(self.grid.alpha)
+        forward, backward = self.normal(n, n), self.normal(n, n)
+        kicks, mixtures = [], []
+        for n_modes in (4, 5):
+            u = self.rng.uniform(0.1, 1.0, (n_rows, n_modes, n))
+            kicks.append((u, *force, *waves, 0.3, np.zeros_like(u)))
+            matrices = self.normal(n // 2, 2 * n_modes, 2 * n_modes)
+            mixtures.append((u, forward, matrices, backward, np.zeros_like(u)))
+        sums = (
+            self.p.reshape(-1, self.n2, n), self.normal(n),
+            np.zeros((self.n1, self.n2)), np.zeros((6, self.n1)),
+        )  # fmt: skip
+        return {
+            "turn_modes": [(u[0], waves[0], np.zeros_like(u[0]))],
+            "kick": kicks,
+            "mix": mixtures,
+            "curvature_sums": [sums],
+        }
+
     def quads(self):
         """Two quads of rows and one array of every shape they are treated in."""
         half, quarter = self.n // 2, -(-self.n // 4)
@@ -183,4 +206,5 @@ class Arguments:
             )],
             "eliminate": [(elimination.pivots, elimination.numbers[2], row[0].copy())],
             "solve_rows": [(p, *elimination, self.out())],
+            **self.smooth_cases(),
         }  # fmt: skip

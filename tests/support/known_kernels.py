@@ -8,12 +8,15 @@ from fpsolve._kernels import (
     functionals,
     moebius,
     rotation,
+    smooth,
     translation,
     tridiagonal,
 )
 from fpsolve._kernels.compiling import ParallelKernel
 
-MODULES = [characteristics, functionals, moebius, rotation, translation, tridiagonal]
+MODULES = [
+    characteristics, functionals, moebius, rotation, smooth, translation, tridiagonal,
+]  # fmt: skip
 
 
 KERNELS = {

@@ -16,9 +16,9 @@ from fpsolve.density.schemes.scheme import Scheme
 from fpsolve.evolution.call import IDENTITY, USER_CODE, Call
 from fpsolve.evolution.differences import differences
 from fpsolve.evolution.schedule import Schedule
-from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.grids.smooth import AnyGrid
 from fpsolve.model.curves.samples import digest_of_curve
-from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.fibre import FibreModel
 from fpsolve.model.potentials.samples import digest_of_potential
 
 __all__ = ["differing_arguments", "digest_of_run", "identified"]
@@ -72,7 +72,7 @@ def differing_arguments(
 
 
 def _sample(
-    about: dict[str, Any], model: LayDownModel, grid: PhaseSpaceGrid, schedule: Schedule
+    about: dict[str, Any], model: FibreModel, grid: AnyGrid, schedule: Schedule
 ) -> None:
     """Describe a user's own parts of a model by what they return to schemes.
 

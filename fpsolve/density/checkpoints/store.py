@@ -17,6 +17,8 @@ from fpsolve.evolution.stored import StoredDensities
 
 __all__ = ["PassStore"]
 
+_DIMENSIONS = ("s", "xi1", "xi2", "alpha", "kappa")
+
 
 class PassStore:
     """The array `density` in one group of a zarr store.
@@ -27,7 +29,7 @@ class PassStore:
         The group, in a store that exists.
     n_saves : int
         Densities when the pass is complete.
-    shape : (int, int, int)
+    shape : tuple of int
         Shape of a density.
 
     Attributes
@@ -91,7 +93,7 @@ class PassStore:
             fill_value=float("nan"),
             compressors=Crc32cCodec(),
             chunk_key_encoding={"name": "v2", "separator": "."},
-            dimension_names=("s", "xi1", "xi2", "alpha"),
+            dimension_names=_DIMENSIONS[: 1 + len(self.shape)],
             config={"write_empty_chunks": True},
             overwrite=True,
         )
@@ -113,4 +115,4 @@ class PassStore:
         return True
 
     def _chunk(self, number: int) -> Path:
-        return self.path / f"{number}.0.0.0"
+        return self.path / ".".join([str(number), *("0" for _ in self.shape)])

@@ -7,9 +7,9 @@ from typing import Any
 
 from fpsolve.density.schemes.known import SCHEMES
 from fpsolve.density.schemes.scheme import Scheme
-from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.grids.smooth import AnyGrid
+from fpsolve.model.fibre import FibreModel
 from fpsolve.model.identity.digests import digest_or_none
-from fpsolve.model.laydown import LayDownModel
 
 __all__ = ["CODE", "describe_scheme", "described_scheme", "scheme_from_dict"]
 
@@ -36,14 +36,14 @@ def describe_scheme(scheme: Scheme) -> dict[str, Any]:
 
 def described_scheme(scheme: Any, arguments: Any = None) -> Any:
     """Return what a call says of a scheme; of a model in its place, the model."""
-    if scheme is None or isinstance(scheme, LayDownModel):
+    if scheme is None or isinstance(scheme, FibreModel):
         return scheme
     about = describe_scheme(scheme)
     return {"$scheme": {"scheme": about, "model": scheme.model, "grid": scheme.grid}}
 
 
 def scheme_from_dict(
-    description: Mapping[str, Any], model: LayDownModel, grid: PhaseSpaceGrid
+    description: Mapping[str, Any], model: FibreModel, grid: AnyGrid
 ) -> Scheme:
     """Return the scheme that `describe_scheme` described.
 

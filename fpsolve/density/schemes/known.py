@@ -4,6 +4,7 @@ from typing import Any
 
 from fpsolve.density.schemes.drift_kick import DriftKick
 from fpsolve.density.schemes.semi_lagrangian import SemiLagrangian
+from fpsolve.density.smooth.smooth_drift_kick import SmoothDriftKick
 
 __all__ = ["SCHEMES"]
 
@@ -11,4 +12,5 @@ __all__ = ["SCHEMES"]
 SCHEMES: dict[str, type[Any]] = {
     "drift_kick": DriftKick,
     "semi_lagrangian": SemiLagrangian,
+    "smooth_drift_kick": SmoothDriftKick,
 }

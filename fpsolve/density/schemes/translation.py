@@ -10,7 +10,7 @@ from fpsolve._kernels.translation import translate, translate_positive
 from fpsolve._support.arrays import Array
 from fpsolve.density.schemes.stencils import Taps, check_order, flux_taps, shift_taps
 from fpsolve.grids.phase_space import PhaseSpaceGrid
-from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.fibre import FibreModel
 
 # A step needs the taps of two shifts (whole and half), Richardson those of four.
 _KEPT = 8
@@ -27,7 +27,7 @@ class Translation:
 
     Parameters
     ----------
-    model : LayDownModel
+    model : FibreModel
         Only `curve` is used.
     grid : PhaseSpaceGrid
     order : int
@@ -38,7 +38,7 @@ class Translation:
 
     def __init__(
         self,
-        model: LayDownModel,
+        model: FibreModel,
         grid: PhaseSpaceGrid,
         order: int = 8,
         positive: bool = False,

@@ -19,7 +19,7 @@ from fpsolve.evolution.layout import (
 )
 from fpsolve.evolution.parts import STEP, Model, OnGrid
 from fpsolve.evolution.series import long_name
-from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.grids.dictionaries import grid_from_dict
 from fpsolve.grids.row_sums import MOMENTS
 
 __all__ = ["STATIONARY"]
@@ -72,7 +72,7 @@ class _Moments(Part):
 STATIONARY = Layout(
     "Stationary density of the fibre lay-down equation",
     Model(),
-    OnGrid(PhaseSpaceGrid, "stationary density p(ξ₁, ξ₂, α)", "density", over=()),
+    OnGrid(grid_from_dict, "stationary density p(ξ₁, ξ₂, α)", "density", over=()),
     Variable("density_l1_error", (), "estimated L¹ error of p", "error", float),
     _Named("part_error", "part", "parts of that error", "errors"),
     _Named("splitting", "quantity", "what one run with ds adds", "splitting"),

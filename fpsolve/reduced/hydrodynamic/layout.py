@@ -25,7 +25,7 @@ SOLUTION = Layout(
     "hydrodynamic limit of fibre lay-down",
     Model("limit", owned=True),
     SAVED,
-    OnGrid(PlaneGrid, "plane density 𝒫(s, ξ₁, ξ₂) of the hydrodynamic limit"),
+    OnGrid(PlaneGrid.from_dict, "plane density 𝒫(s, ξ₁, ξ₂) of the hydrodynamic limit"),
     Variable(
         "initial_density",
         PlaneGrid.axes,

@@ -12,7 +12,7 @@ import numpy as np
 from fpsolve.density.schemes.dictionaries import scheme_from_dict
 from fpsolve.errors import NotRepeatableError
 from fpsolve.evolution.call import ARRAY, KEPT, USER_CODE, Call
-from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.grids.dictionaries import grid_from_dict
 from fpsolve.grids.plane import PlaneGrid
 from fpsolve.model.potentials.dictionaries import potential_from_dict
 from fpsolve.model.reading import model_from_dict
@@ -54,7 +54,7 @@ _SCHEME, _MODEL = "$scheme", "$model"
 READERS: dict[str, Callable[[Any], Any]] = {
     "$potential": potential_from_dict,
     _MODEL: model_from_dict,
-    "$grid": PhaseSpaceGrid.from_dict,
+    "$grid": grid_from_dict,
     "$plane": PlaneGrid.from_dict,
     "$law": law_from_formula,
     "$density_law": lambda about: DensityLaw(about["grid"], about["p"]),

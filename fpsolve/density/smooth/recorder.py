@@ -1,0 +1,78 @@
+"""What a run of a smooth fibre writes down: no entropy unless it is told of what."""
+
+from __future__ import annotations
+
+import math
+from array import array
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from fpsolve._support.arrays import Array
+from fpsolve.density.recorder import Record, Recorder
+from fpsolve.evolution.series import Series
+from fpsolve.grids import diagnostics
+from fpsolve.grids.smooth import SmoothPhaseSpaceGrid
+from fpsolve.grids.smooth_sums import SmoothFunctionals
+
+__all__ = ["SmoothRecorder", "recorder_for"]
+
+
+class SmoothRecord(Record):
+    """One step of a run; see `Record`.
+
+    Attributes
+    ----------
+    p : ndarray, shape (n1, n2, n_alpha, n_kappa)
+    sums : SmoothFunctionals
+    """
+
+    sums: Any
+
+    def __init__(
+        self, recorder: Any, p: Array, s: float, report: Mapping[str, float]
+    ) -> None:
+        self.recorder, self.p, self.s, self.report = recorder, p, s, report
+        self.grid = recorder.grid
+        self.sums = SmoothFunctionals(p, recorder.grid)
+        self.moments = self.sums.moments()
+        self.boundary_mass = diagnostics.ring_share(self.sums.rows[2])
+        self.kappa_boundary_mass = self.sums.kappa_boundary_mass()
+
+
+class SmoothRecorder(Recorder):
+    """Series of a run of equation (23).
+
+    What is stationary on a fixed belt has no closed form: the entropy is NaN without a
+    reference, and nothing is known that it must obey.
+
+    Parameters
+    ----------
+    model : SmoothLayDownModel
+    grid : SmoothPhaseSpaceGrid
+    reference : ndarray, shape (n1, n2, n_alpha, n_kappa), or None
+    observed : sequence of Series
+    """
+
+    kind_of_record = SmoothRecord
+
+    def __init__(
+        self,
+        model: Any,
+        grid: Any,
+        reference: Array | None = None,
+        observed: Sequence[Series] = (),
+    ) -> None:
+        self.model, self.grid, self.observed = model, grid, observed
+        self.noise = model.curvature_noise
+        self.reference, self.inverse = reference, None
+        self.falls, self.lowest = False, math.inf
+        self.circulation = self.uncounted = None
+        self.first, self.numbers = {}, array("d")
+
+
+def recorder_for(
+    scheme: Any, reference: Array | None, observed: Sequence[Series]
+) -> Recorder:
+    """The recorder for the grid of a scheme."""
+    kind = SmoothRecorder if isinstance(scheme.grid, SmoothPhaseSpaceGrid) else Recorder
+    return kind(scheme.model, scheme.grid, reference, observed)
