@@ -216,13 +216,18 @@ class CurvatureRangeError(RunError):
         "Share of the mass in the first and the last cells of κ."
     )
     kappa_half_width: float = said("Largest curvature of the grid.")
-    s: float = said("Arclength at which it was noticed.")
     tolerance: float = said("Largest share allowed.")
+    s: float | None = said(
+        "Arclength at which it was noticed.", "float, optional", default=None
+    )
     _says = (
-        "boundary mass {boundary_mass:.2g} in κ exceeds tolerance {tolerance:g} at "
-        "s = {s:g}: curvatures up to {kappa_half_width:g} are too few; enlarge "
+        "boundary mass {boundary_mass:.2g} in κ exceeds tolerance {tolerance:g}"
+        "{place}: curvatures up to {kappa_half_width:g} are too few; enlarge "
         "`kappa_half_width`."
     )
+
+    def _texts(self) -> dict[str, str]:
+        return {"place": "" if self.s is None else f" at s = {self.s:g}"}
 
 
 @stated

@@ -6,14 +6,18 @@ import math
 import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from typing import Any
 
 from fpsolve._support.arrays import Array
 from fpsolve._support.blas import one_blas_thread
 from fpsolve._support.checks import check_flag, check_tolerance
+from fpsolve._support.memory import check_memory, required_memory
 from fpsolve.density.schemes import drift_kick
 from fpsolve.density.schemes.dictionaries import described_scheme
 from fpsolve.density.schemes.drift_kick import DriftKick
 from fpsolve.density.schemes.scheme import Scheme, checked_scheme
+from fpsolve.density.smooth.lag import curvature_lag
+from fpsolve.density.smooth.smooth_drift_kick import SmoothDriftKick
 from fpsolve.density.stationary.at_rest import at_rest
 from fpsolve.density.stationary.estimates import (
     DENSITY,
@@ -30,11 +34,15 @@ from fpsolve.density.stationary.remedies import remedy
 from fpsolve.density.stationary.requirements import check_stationary, checked_step
 from fpsolve.density.stationary.result import SteadyState
 from fpsolve.density.suggestions import suggest_step
-from fpsolve.errors import DomainTooSmallError, ToleranceError
+from fpsolve.errors import CurvatureRangeError, DomainTooSmallError, ToleranceError
 from fpsolve.evolution.call import recorded
 from fpsolve.grids import diagnostics
-from fpsolve.grids.phase_space import PhaseSpaceGrid, check_grid
+from fpsolve.grids.phase_space import check_grid
+from fpsolve.grids.smooth import AnyGrid, SmoothPhaseSpaceGrid, check_smooth_grid
+from fpsolve.grids.smooth_sums import SmoothFunctionals
+from fpsolve.model.fibre import FibreModel
 from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.smooth import SmoothLayDownModel
 
 __all__ = ["SteadyState", "steady_state"]
 
@@ -48,6 +56,8 @@ FIRST_ERROR, LARGEST_TURN = 0.05, 1.5
 STEP_SHARE = 0.2
 # Above, an estimate is no more than a sign that nothing is resolved.
 WORTHLESS = 0.1
+# Densities that the Krylov iteration keeps, and the strides.
+DIRECTIONS = 60.0
 # The combination that a single step length is compared with has an error, too.
 COMPARED = 1.25
 
@@ -55,8 +65,8 @@ COMPARED = 1.25
 @recorded(model=described_scheme)
 @one_blas_thread()
 def steady_state(
-    model: LayDownModel | Scheme,
-    grid: PhaseSpaceGrid | None = None,
+    model: FibreModel | Scheme,
+    grid: AnyGrid | None = None,
     *,
     ds: float | None = None,
     tolerance: float = 1e-9,
@@ -66,22 +76,23 @@ def steady_state(
 ) -> SteadyState:
     """Density with L* p = 0 on the grid, with its error in L1.
 
-    On a fixed belt it is p_S = c e^{−B} (10), whatever the noise. On a belt of
-    constant speed v it is the fixed point of an evolution over about a unit of
-    arclength, extrapolated from three step lengths, found by a recycled Krylov
-    iteration on half of the cells, three quarters, and all. Conserved: mass. Steps are
-    shortened until their error is a fifth of `error_tolerance`; the cells and the box
-    are as given, so that their errors can only be estimated: compare `errors`.
+    On a fixed belt it is p_S = c e^{−B} (10), whatever the noise. On a belt of constant
+    speed v, and of a smooth fibre on any belt, it is the fixed point of an evolution
+    over about a unit of arclength, extrapolated from three step lengths, found by a
+    recycled Krylov iteration on half of the cells, three quarters, and all. Conserved:
+    mass. Steps are shortened until their error is a fifth of `error_tolerance`; the
+    cells and the box are as given, so that their errors can only be estimated: compare
+    `errors`.
 
     Parameters
     ----------
-    model : LayDownModel or Scheme
+    model : LayDownModel, SmoothLayDownModel or Scheme
         A model on a moving belt is solved with `drift_kick(model, grid,
-        interpolation_order=12)`. A scheme must be linear (not `positive`, not
-        limited). Of another than `drift_kick`, and of p/p_S, the density is that of
-        one step as it is, and its error is told by its distance from the density of
-        the model.
-    grid : PhaseSpaceGrid
+        interpolation_order=12)`, a smooth one with `smooth_drift_kick`. A scheme must
+        be linear (not `positive`, not limited). Of another than these, and of p/p_S,
+        the density is that of one step as it is, and its error is told by its distance
+        from the density of the model.
+    grid : PhaseSpaceGrid or SmoothPhaseSpaceGrid
         May be left out for a scheme, which has one.
     ds : float, optional
         A step to use as it is, however large its error; ds alone unless `extrapolate`.
@@ -104,8 +115,10 @@ def steady_state(
         direction on a moving belt.
     SteadyStateError
         If the residual stays above `tolerance`.
-    DomainTooSmallError
-        If the box cuts the density off.
+    DomainTooSmallError, CurvatureRangeError
+        If the box cuts the density off, or the range of the curvature.
+    MemoryLimitError
+        If the directions that are remembered need more memory than there is.
     ToleranceError
         If the error is estimated above 0.1 (and above `error_tolerance`): the grid
         does not resolve the density.
@@ -129,9 +142,10 @@ def steady_state(
         check_tolerance("error_tolerance", error_tolerance),
     )
     boundary_tolerance = check_tolerance("boundary_tolerance", boundary_tolerance)
-    if scheme.model.curve.fixed:
+    smooth = isinstance(scheme, SmoothDriftKick)
+    if scheme.model.curve.fixed and not smooth:
         result, order = at_rest(scheme, request.ds or first_step(scheme)), 2.0
-    elif isinstance(scheme, DriftKick) and not scheme.balanced:
+    elif smooth or (isinstance(scheme, DriftKick) and not scheme.balanced):
         result, order = by_palindrome(scheme, request)
     else:
         result, order = by_scheme(scheme, request)
@@ -183,11 +197,18 @@ def first_step(scheme: Scheme) -> float:
     return min(ds, 1.0 / math.ceil(1.0 / turn))
 
 
-def scheme_for(model: LayDownModel | Scheme, grid: PhaseSpaceGrid | None) -> Scheme:
+def scheme_for(model: Any, grid: Any) -> Any:
     """The scheme to iterate, checked."""
+    if isinstance(model, FibreModel) and grid is None:
+        raise TypeError("`grid` is needed with a model; pass a PhaseSpaceGrid.")
+    cells = grid if isinstance(model, FibreModel) else getattr(model, "grid", None)
+    if isinstance(cells, SmoothPhaseSpaceGrid):
+        check_memory(required_memory(cells.nbytes, DIRECTIONS, 0))
+    if isinstance(model, SmoothLayDownModel):
+        check_smooth_grid(grid)
+        order = INTERPOLATION_ORDER
+        return SmoothDriftKick(model, grid, interpolation_order=order)
     if isinstance(model, LayDownModel):
-        if grid is None:
-            raise TypeError("`grid` is needed with a model; pass a PhaseSpaceGrid.")
         check_grid(grid)
         # On a belt p/p_S grows without bound along it.
         return drift_kick(
@@ -205,7 +226,7 @@ def scheme_for(model: LayDownModel | Scheme, grid: PhaseSpaceGrid | None) -> Sch
     return model
 
 
-def with_errors(scheme: Scheme, found: Refined, extrapolated: bool) -> SteadyState:
+def with_errors(scheme: Any, found: Refined, extrapolated: bool) -> SteadyState:
     """The density on the finest grid with all parts of its error."""
     p, grid = found.finest.density, scheme.grid
     step = field_error(found.finest.step, p, grid)
@@ -215,6 +236,10 @@ def with_errors(scheme: Scheme, found: Refined, extrapolated: bool) -> SteadySta
         "box": box_error(p, grid),
         "iteration": field_error(found.finest.iteration, p, grid),
     }
+    if isinstance(scheme, SmoothDriftKick):
+        lag = curvature_lag(scheme.model, scheme.grid, found.finest.ds)
+        lag[DENSITY] = lag.pop("density_l1")
+        parts = {**parts, "curvature": lag}
     errors = total(parts)
     return SteadyState(
         density=p,
@@ -236,6 +261,11 @@ def check_boundary(
 ) -> None:
     """Raise if there is mass at the edge: the box cuts it off, or it is but noise."""
     share = diagnostics.boundary_mass(result.density, result.grid)
+    grid: Any = result.grid
+    if isinstance(grid, SmoothPhaseSpaceGrid):
+        ends = SmoothFunctionals(result.density, grid).kappa_boundary_mass()
+        if ends > boundary_tolerance:
+            raise CurvatureRangeError(ends, grid.kappa_half_width, boundary_tolerance)
     if share <= boundary_tolerance:
         return
     if result.errors["grid"] > max(result.errors["box"], WORTHLESS):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 from fpsolve._support.checks import check_real
 from fpsolve.density.error_laws import (
@@ -12,10 +13,15 @@ from fpsolve.density.error_laws import (
     splitting_coefficient,
     unit_of_length,
 )  # fmt: skip
-from fpsolve.grids.phase_space import PhaseSpaceGrid, check_grid
+from fpsolve.grids.phase_space import check_grid
+from fpsolve.grids.smooth import check_smooth_grid
 from fpsolve.model.laydown import LayDownModel, check_model
+from fpsolve.model.smooth import SmoothLayDownModel
 
 __all__ = ["SuggestedStep", "suggest_step"]
+
+# Relaxation lengths below are not resolved: the density of (ξ, α) does not need it.
+LEAST_RESOLVED = 0.1
 
 
 class SuggestedStep(float):
@@ -40,7 +46,7 @@ class SuggestedStep(float):
 
 
 def suggest_step(
-    model: LayDownModel, grid: PhaseSpaceGrid, tolerance: float = 1e-2
+    model: LayDownModel | SmoothLayDownModel, grid: Any, tolerance: float = 1e-2
 ) -> SuggestedStep:
     """Step ds with C ds² ≤ tolerance, C = 0.4 (1/ℓ² + κ) + 0.18 A²/ℓ, κ = ½ E|∇B|².
 
@@ -54,8 +60,10 @@ def suggest_step(
 
     Parameters
     ----------
-    model : LayDownModel
-    grid : PhaseSpaceGrid
+    model : LayDownModel or SmoothLayDownModel
+        Of a smooth fibre also ds ≤ R/4, where R is at least 0.1: the law is that of the
+        limit of small R.
+    grid : PhaseSpaceGrid or SmoothPhaseSpaceGrid
         Tells where the force is averaged, and whether the interpolation keeps up.
     tolerance : float
         L1 error to aim at.
@@ -65,6 +73,8 @@ def suggest_step(
     SuggestedStep
         A float; `.reason` says why.
     """
+    if isinstance(model, SmoothLayDownModel):
+        return _smooth_step(model, grid, tolerance)
     check_model(model)
     check_grid(grid)
     check_tolerance(tolerance)
@@ -93,6 +103,19 @@ def suggest_step(
             f"error is about {reach:.1g}, refine the grid"
         )
     return SuggestedStep(ds, reason + ".")
+
+
+def _smooth_step(
+    model: SmoothLayDownModel, grid: Any, tolerance: float
+) -> SuggestedStep:
+    """The step of the limit R → 0, a quarter of R where that is not many steps."""
+    check_smooth_grid(grid)
+    limit = suggest_step(model.white_noise_limit, grid.phase_space, tolerance)
+    longest = model.relaxation_length / 4
+    if model.relaxation_length < LEAST_RESOLVED or limit <= longest:
+        return limit
+    ds = 1.0 / math.ceil(1.0 / longest)
+    return SuggestedStep(ds, f"a quarter of R resolves the curvature; {limit.reason}")
 
 
 def check_tolerance(tolerance: float) -> None:

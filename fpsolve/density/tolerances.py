@@ -84,7 +84,7 @@ def check_record(
     at_ends = values.get("kappa_boundary_mass", 0.0)
     if not at_ends <= allowed.boundary:
         grid: Any = scheme.grid
-        raise CurvatureRangeError(at_ends, grid.kappa_half_width, s, allowed.boundary)
+        raise CurvatureRangeError(at_ends, grid.kappa_half_width, allowed.boundary, s)
     _check_laws(values, allowed)
 
 

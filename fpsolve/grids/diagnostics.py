@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator
 
 import numpy as np
+from numpy.typing import NDArray
 
 from fpsolve._support.arrays import Array, check_finite_numbers, check_numbers
 from fpsolve._support.checks import check_non_negative, check_one_of
@@ -29,6 +30,8 @@ __all__ = [
 
 
 CELLS_PER_SLAB = 32768
+# Share of the largest value of a reference below which it says nothing of slopes.
+LEAST_OF_LARGEST = 1e-6
 # Staggered weights of order eight, from the nearest pair outward.
 DIFFERENCE = (1225 / 1024, -245 / 3072, 49 / 5120, -5 / 7168)
 MIDPOINT = (1225 / 2048, -245 / 2048, 49 / 2048, -5 / 2048)
@@ -223,6 +226,9 @@ def entropy_dissipation(
         )
     root = np.sqrt(np.maximum(p, 0.0) / np.maximum(reference, SMALLEST))
     slope, weight = staggered(root, DIFFERENCE, -1.0), staggered(reference, MIDPOINT, 1)
+    if isinstance(grid, SmoothPhaseSpaceGrid):
+        # A reference that was computed is rounding, or was cut at zero, in its tails.
+        weight[beside(reference <= LEAST_OF_LARGEST * reference.max())] = 0.0
     total = float((weight * slope**2).sum()) / grid.spacing[-1] ** 2
     return 2.0 * noise**2 * total * grid.cell_volume
 
@@ -233,6 +239,14 @@ def staggered(q: Array, weights: tuple[float, ...], sign: float) -> Array:
     for j, weight in enumerate(weights):
         total += weight * (np.roll(q, -1 - j, axis=-1) + sign * np.roll(q, j, axis=-1))
     return total
+
+
+def beside(marked: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Where a difference in the last direction uses a cell that is marked."""
+    reached = np.zeros_like(marked)
+    for j in range(len(DIFFERENCE)):
+        reached |= np.roll(marked, -1 - j, axis=-1) | np.roll(marked, j, axis=-1)
+    return reached
 
 
 def l1_distance(p: Array, q: Array, grid: AnyGrid) -> float:

@@ -1,5 +1,7 @@
 """The density of a smooth fibre, equation (23): exact laws, orders, limits."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 from orders import assert_order, measure_order
@@ -10,6 +12,7 @@ from fpsolve.density.schemes import drift_kick, smooth_drift_kick
 from fpsolve.density.smooth.relaxation import covariance
 from fpsolve.density.smooth.smooth_drift_kick import split_force
 from fpsolve.density.solve import solve
+from fpsolve.evolution.series import SERIES
 from fpsolve.grids import diagnostics
 from fpsolve.grids.smooth import SmoothPhaseSpaceGrid
 from fpsolve.model.curves import MovingBelt
@@ -272,6 +275,16 @@ def test_the_entropy_is_recorded_relative_to_what_is_given_and_to_nothing_else()
     assert (told.entropy_dissipation > 0).all()
 
 
+def test_every_run_records_what_is_known_of_the_curvature():
+    model = smooth(0.2)
+    grid = grid_for(model, n=12)
+    found = run(model, grid, start(model, grid), 0.5, 2)
+    lawful = {"theta", "entropy_rise", "circulation", "circulation_deviation"}
+    assert set(found.series) == set(SERIES) - lawful
+    labels = found.to_xarray()
+    assert labels.mean_kappa2.attrs["long_name"] == "mean E κ² of the squared curvature"
+
+
 def test_a_range_of_curvature_that_cuts_the_density_is_refused():
     model = smooth(0.2)
     grid = grid_for(model, n=12, largest=2.2 * np.sqrt(model.curvature_variance))
@@ -299,3 +312,92 @@ def test_what_cannot_be_solved_is_refused_in_words():
         solve(scheme, p0, (0.0, 1.0), 0.1, memory_limit=2**20)
     with pytest.raises(ValueError, match="`p0` must have a curvature"):
         solve(scheme, p0[..., 0], (0.0, 1.0), 0.1)
+
+
+@cache
+def steady(speed):
+    """The stationary density on coarse cells, from three step lengths."""
+    model = smooth(0.3, 2.0, speed=speed)
+    grid = grid_for(model, n=14, n_alpha=12)
+    return fp.steady_state(
+        model, grid, ds=0.1, extrapolate=True, tolerance=1e-5, error_tolerance=1.0,
+        boundary_tolerance=1e-2,
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("speed", [0.0, 0.2])
+def test_the_stationary_density_obeys_the_identities_of_the_belt(speed, tmp_path):
+    # E cos α = −v, E sin α = 0, and for B = |ξ|²/2
+    # E κ² = A²/2R + E cos² α + E sin² α − v², on coarse cells that say so.
+    found = steady(speed)
+    model, grid = found.model, found.grid
+    moments, error = found.moments(), found.moment_errors
+    assert abs(moments["mean_cos_alpha"] + speed) <= error["mean_cos_alpha"]
+    assert abs(moments["mean_sin_alpha"]) <= error["mean_sin_alpha"]
+    expected = model.curvature_variance + 1.0 - speed**2
+    assert abs(moments["mean_kappa2"] - expected) <= error["mean_kappa2"]
+    # Measured: 0.2 % of 7.67, where the stated error is a sum of worst cases.
+    assert moments["mean_kappa2"] == pytest.approx(expected, rel=6e-3)
+    # Of the mean of ξ·τ, which does not change: E (ξ·τ⊥)κ = −(1 − v²).
+    xi1, xi2, alpha, kappa = grid.mesh()
+    across = xi2 * np.cos(alpha) - xi1 * np.sin(alpha)
+    turned = float((across * kappa * found.density).sum()) * grid.cell_volume
+    assert turned == pytest.approx(speed**2 - 1.0, abs=2e-2)
+    # e^{−B} times a Gaussian is not stationary: the density is wider than that.
+    assert moments["variance_xi2"] > 1.3
+    p0 = found.density
+    later = run(model, grid, p0, 1.0, 40, 12, boundary_tolerance=1e-2)
+    # One step length of order two, and the residual.
+    assert diagnostics.l1_distance(later.final, p0, grid) < 2e-3
+    read = fp.load(found.save(tmp_path / "steady.nc"))
+    assert np.array_equal(read.density, found.density)
+    assert read.moment_errors == found.moment_errors
+    assert (read.grid, read.model) == (grid, model)
+
+
+def test_the_entropy_relative_to_the_stationary_density_falls_by_its_dissipation():
+    found = steady(0.2)
+    grid = found.grid
+    # Ripples of coarse cells are below zero in the tails, by 2e-4 of the largest.
+    assert found.density.min() > -1e-3 * found.density.max()
+    told = run(
+        found.model, grid, start(found.model, grid, variance=0.9), 2.0, 32, 12,
+        record_every=1, extrapolate=True, boundary_tolerance=1e-2,
+        reference=np.maximum(found.density, 0.0),
+    )  # fmt: skip
+    s, entropy = told.s[8:], told.relative_entropy[8:]
+    assert (np.diff(entropy) < 0).all()
+    lost = np.trapezoid(told.entropy_dissipation[8:], s)
+    # Tails that the dissipation leaves out and sixteen cells in κ: 1 % measured.
+    assert lost == pytest.approx(entropy[0] - entropy[-1], rel=0.04)
+
+
+def test_a_stationary_density_is_refused_where_memory_or_curvature_do_not_do():
+    model = smooth(0.3, 2.0)
+    with pytest.raises(TypeError, match="`grid` must be a SmoothPhaseSpaceGrid"):
+        fp.steady_state(model, grid_for(model).phase_space)
+    with pytest.raises(errors.MemoryLimitError):
+        fp.steady_state(model, grid_for(model, n=2000, n_alpha=256))
+    # Two and a half deviations of a free curvature.
+    narrow = grid_for(model, n=10, n_alpha=8, largest=6.5, n_kappa=12)
+    with (
+        pytest.warns(UserWarning, match="before normalisation"),
+        pytest.raises(errors.CurvatureRangeError, match="enlarge `kappa_half_width`"),
+    ):
+        fp.steady_state(
+            model, narrow, ds=0.1, tolerance=1e-2, error_tolerance=10.0,
+            boundary_tolerance=0.02,
+        )  # fmt: skip
+
+
+def test_a_step_is_a_quarter_of_r_unless_that_is_too_many():
+    basic = fp.suggest_step(
+        smooth(1.0).white_noise_limit, grid_for(smooth(1.0)).phase_space
+    )
+    for length, expected in ((0.2, 0.05), (1e-3, basic), (50.0, basic)):
+        model = smooth(length)
+        step = fp.suggest_step(model, grid_for(model))
+        assert step == expected
+    assert (
+        "a quarter of R" in fp.suggest_step(smooth(0.2), grid_for(smooth(0.2))).reason
+    )

@@ -36,7 +36,7 @@ EXAMPLES = [
         "(6, 5) is too small; enlarge `half_width`.",
     ),
     (
-        errors.CurvatureRangeError(0.02, 6.0, 1.0, 1e-3),
+        errors.CurvatureRangeError(0.02, 6.0, 1e-3, 1.0),
         "boundary mass 0.02 in κ exceeds tolerance 0.001 at s = 1: curvatures up to 6 "
         "are too few; enlarge `kappa_half_width`.",
     ),

@@ -20,6 +20,8 @@ from fpsolve.model.smooth import SmoothLayDownModel
 
 __all__ = ["SmoothDriftKick", "split_force"]
 
+# Unknown and scratch of two passes, and copies in the order that products want.
+ALIVE = 8.0
 # Mass errors that are rounding, and worth a factor.
 SEEN, ROUNDING = 2e-14, 1e-12
 # Below this share of 2R, x − tanh x from its series: the rest is below rounding.
@@ -88,9 +90,9 @@ class SmoothDriftKick:
 
     @property
     def n_arrays(self) -> float:
-        """Densities alive during a run: unknown, scratch, a record's, two tables."""
+        """Densities alive during a run, as measured, and two tables of rotations."""
         table = self.grid.shape[2] / (4 * self.grid.shape[3])
-        return 3.0 + 2.0 * min(LARGEST_TABLE, table)
+        return ALIVE + 2.0 * min(LARGEST_TABLE, table)
 
     def start(self, p0: Array) -> State:
         """State of a run that begins at p0."""

@@ -3,38 +3,41 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
 from fpsolve._support.arrays import Array
-from fpsolve.grids.phase_space import PhaseSpaceGrid
 
 __all__ = ["carried", "coarser_grid"]
 
 # What a scheme needs, and what leaves a coarser grid below it.
 FEWEST, LEAST = 4, 6
+OF_CURVATURE = 3 / 4
 
 
-def coarser_grid(grid: PhaseSpaceGrid, share: float) -> PhaseSpaceGrid:
+def coarser_grid(grid: Any, share: float) -> Any:
     """The same box with at most this share of the cells in every direction.
 
-    Along ξ the number stays even or odd as it was: where ∇B jumps at the origin, it
-    matters whether a centre of a cell lies there. So it does along α, where some
-    schemes need an even number.
+    Of those of a curvature three quarters are left, which have to resolve it. Along ξ
+    the number stays even or odd as it was: where ∇B jumps at the origin, it matters
+    whether a centre of a cell lies there. So it does along α, where some schemes need
+    an even number.
 
     Raises
     ------
     ValueError
         If there are too few cells to do with fewer.
     """
-    shape = tuple(fewer(n, share) for n in grid.shape)
+    shape = tuple(fewer(n, share) for n in grid.shape[:3])
+    shape += tuple(fewer(n, max(share, OF_CURVATURE)) for n in grid.shape[3:])
     if not all(m < n for m, n in zip(shape, grid.shape, strict=True)):
         raise ValueError(
             f"`grid` must have at least {LEAST} cells in every direction, so that a "
             f"coarser one can tell its error, got {grid.shape}."
         )
-    n1, n2, n_alpha = shape
-    return PhaseSpaceGrid(grid.half_width, (n1, n2, n_alpha))
+    return replace(grid, shape=shape)
 
 
 def fewer(n: int, share: float) -> int:
@@ -43,7 +46,7 @@ def fewer(n: int, share: float) -> int:
     return max(FEWEST + remainder, 2 * int((share * n - remainder) / 2) + remainder)
 
 
-def carried(p: Array, shape: tuple[int, int, int]) -> Array:
+def carried(p: Array, shape: tuple[int, ...]) -> Array:
     """p by its trigonometric interpolant at the centres of `shape` cells."""
     for axis, n in enumerate(shape):
         if n != p.shape[axis]:

@@ -20,7 +20,7 @@ from fpsolve.evolution.layout import (
 from fpsolve.evolution.parts import STEP, Model, OnGrid
 from fpsolve.evolution.series import long_name
 from fpsolve.grids.dictionaries import grid_from_dict
-from fpsolve.grids.row_sums import MOMENTS
+from fpsolve.grids.smooth_sums import SMOOTH_MOMENTS
 
 __all__ = ["STATIONARY"]
 
@@ -64,7 +64,7 @@ class _Moments(Part):
         }
 
     def read(self, source: Source) -> dict[str, Any]:
-        known = [name for name in MOMENTS if f"{name}_error" in source.dataset]
+        known = [name for name in SMOOTH_MOMENTS if f"{name}_error" in source.dataset]
         errors = {name: float(source.dataset[f"{name}_error"]) for name in known}
         return {"moment_errors": errors}
 

@@ -64,7 +64,7 @@ def refined(scheme: DriftKick, ds: float, solver: Solver) -> Refined:
     grids = [*(coarser_grid(grid, share) for share in SHARES), grid]
     results: list[Stationary] = []
     for one in grids:
-        here = DriftKick(scheme.model, one, **scheme.options)
+        here = type(scheme)(scheme.model, one, **scheme.options)
         try:
             found = solver(here, start_for(here, results), ds)
         except SteadyStateError:

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 from fpsolve.density.stationary.result import SteadyState
 from fpsolve.density.stationary.start import concentration_of
-from fpsolve.grids.phase_space import PhaseSpaceGrid
-from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.fibre import FibreModel
 
 __all__ = ["remedy"]
 
@@ -39,15 +39,17 @@ def remedy(result: SteadyState, tolerance: float, order: float) -> str:
     return "; ".join(advice) or "`tolerance` is too large"
 
 
-def proposed(grid: PhaseSpaceGrid, widening: float, finer: float) -> str:
+def proposed(grid: Any, widening: float, finer: float) -> str:
     """The grid in words: half widths, and even numbers of cells as dense as needed."""
     half1, half2 = (widening * half for half in grid.half_widths)
     n1, n2 = (2 * math.ceil(widening * finer * n / 2) for n in grid.shape[:2])
     n_alpha = 4 * math.ceil(finer * grid.shape[2] / 4)
-    return f"half widths ({half1:.3g}, {half2:.3g}) and ({n1}, {n2}, {n_alpha}) cells"
+    curved = "".join(f", {2 * math.ceil(finer * n / 2)}" for n in grid.shape[3:])
+    cells = f"({n1}, {n2}, {n_alpha}{curved})"
+    return f"half widths ({half1:.3g}, {half2:.3g}) and {cells} cells"
 
 
-def wider(model: LayDownModel | None, grid: PhaseSpaceGrid, excess: float) -> float:
+def wider(model: FibreModel | None, grid: Any, excess: float) -> float:
     """Factor of the half widths at which e^{−B} on the belt has fallen by `excess`."""
     if model is None:
         return WIDEST

@@ -26,7 +26,7 @@ class SteadyState(Saved):
     Attributes
     ----------
     density : ndarray, shape (n1, n2, n_alpha)
-        Normalised to mass one on the grid.
+        With a curvature (n1, n2, n_alpha, n_kappa). Normalised to mass one on the grid.
     residual : float
         ∫ |p_{s+σ} − p_s| dξ dα / σ over a stride σ of about one: the rate at which the
         discrete equation still changes the density.
@@ -41,7 +41,8 @@ class SteadyState(Saved):
         Its parts. "step": the splitting, from another combination of step lengths.
         "grid": cells and angles, from the same density with three quarters of them.
         "box": what the box cuts off, from the density along its edge. "iteration":
-        what further corrections would change.
+        what further corrections would change; of a smooth fibre "curvature": what κ
+        lags behind, where steps are not short against R.
     moment_errors : dict of float
         The same estimate for every one of `moments`.
     splitting : dict of float
@@ -86,7 +87,7 @@ class SteadyState(Saved):
         )
 
     def marginal(self, which: str) -> Array:
-        """∫ p over the other variables: "xi", "alpha", "xi1" or "xi2"."""
+        """∫ p over the others: "xi", "alpha", "xi1", "xi2"; "kappa", "xi_alpha"."""
         return diagnostics.marginal(self.density, self.grid, which)
 
     def moments(self) -> dict[str, float]:

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 from scipy.optimize import brentq
 from scipy.special import i0e, i1e
 
 from fpsolve._support.arrays import Array
-from fpsolve.grids.phase_space import PhaseSpaceGrid
-from fpsolve.model.laydown import LayDownModel
+from fpsolve.grids import initial
+from fpsolve.grids.smooth import SmoothPhaseSpaceGrid
 
 __all__ = ["concentration_of", "start_on"]
 
@@ -28,17 +29,23 @@ def concentration_of(speed: float) -> float:
     return float(brentq(excess, 0.0, largest, xtol=2e-12 * speed))
 
 
-def start_on(grid: PhaseSpaceGrid, model: LayDownModel) -> Array:
+def start_on(grid: Any, model: Any) -> Array:
     """exp(−B + f e·ξ − k e·τ)/c, where −γ′ = v e and f = A²k/2.
 
     For large noise the belt is a force; the mean force and direction are then exact.
+    The curvature of a smooth fibre begins as that of a free one.
 
     Parameters
     ----------
-    grid : PhaseSpaceGrid
-    model : LayDownModel
+    grid : PhaseSpaceGrid or SmoothPhaseSpaceGrid
+    model : LayDownModel or SmoothLayDownModel
         On a belt of constant speed.
     """
+    if isinstance(grid, SmoothPhaseSpaceGrid):
+        basic = start_on(grid.phase_space, model)
+        return initial.with_curvature(basic, grid, model.curvature_variance)
+    if model.curve.fixed:
+        return initial.equilibrium(grid, model.potential)
     velocity1, velocity2 = (float(one) for one in model.curve.velocity(0.0))
     speed = math.hypot(velocity1, velocity2)
     k = concentration_of(speed)
