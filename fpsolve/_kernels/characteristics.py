@@ -41,7 +41,7 @@ def following(index, n):
     return index + 1 if index + 1 < n else 0
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, fastmath={"contract"}, error_model="numpy")
 def wrapped(cell, n):
     """The whole number `cell` modulo n; in floats, an integer division is slow.
 
@@ -179,7 +179,7 @@ def value_quintic(h, x, y, z):
     return total
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, fastmath={"contract"}, error_model="numpy")
 def nodes_around(x):
     """First node of those around x and their number: 2, or 1 if x is a node itself.
 

@@ -13,14 +13,21 @@ from fpsolve._kernels.threads import parallel_region
 
 __all__ = ["ParallelKernel", "kernels_are_kept", "njit"]
 
+# What numba would take from whichever caller is compiled first, if it were not said: a
+# helper compiled on its own, and kept, would round otherwise than one compiled for its
+# caller.
+INHERITED = {"fastmath": False, "forceinline": False, "error_model": "python"}
+
 _told = False
 
 
 def njit(**options):
     """``numba.njit(**options)``, which compiles anew if the result cannot be kept.
 
-    With ``parallel=True`` gives a `ParallelKernel`.
+    With ``parallel=True`` gives a `ParallelKernel`. What is not said is the default of
+    numba, also where another kernel asks for the compilation.
     """
+    options = {**INHERITED, **options}
 
     def decorate(function):
         try:

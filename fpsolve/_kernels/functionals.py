@@ -44,7 +44,7 @@ R1, R2, R3, R4, R5, R6, R7 = (
 # as long as a quarter of a row does.
 
 
-@register_jitable(fastmath={"contract"}, error_model="numpy")
+@register_jitable(fastmath={"contract"}, error_model="numpy", forceinline=True)
 def logarithm(x):
     """ln x of four positive normal numbers, to two units in the last place.
 
@@ -63,7 +63,7 @@ def logarithm(x):
     return e * spread(LN2) + (f - s * (f - fused(z, odd, even)))
 
 
-@register_jitable
+@register_jitable(fastmath={"contract"}, error_model="numpy", forceinline=True)
 def summed(lanes):
     """Sum of four lanes, in pairs."""
     a, b, c, d = parts(lanes)

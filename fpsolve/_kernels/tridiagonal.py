@@ -10,7 +10,7 @@ from numba import prange
 from fpsolve._kernels.compiling import njit
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, fastmath={"contract"}, error_model="numpy")
 def eliminate(pivots, off, row):
     """Solve the tridiagonal part in place; pivots (n,) inverse pivots, row (n,)."""
     n = row.size

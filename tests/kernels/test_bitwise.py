@@ -74,6 +74,19 @@ def test_what_is_compiled_now_gives_the_bits_of_what_numba_kept(
         assert found == expected
 
 
+@pytest.mark.nightly
+def test_a_helper_compiled_before_its_caller_gives_the_bits_of_one_compiled_for_it(
+    tmp_path,
+):
+    # The elimination is all products and differences, fused or not.
+    helper, caller = "kernel of elimination", "kernel of diffusion"
+    first, last = (
+        in_another_process(1, 1, *names, NUMBA_CACHE_DIR=str(tmp_path / names[0]))
+        for names in ((helper, caller), (caller, helper))
+    )
+    assert first == last
+
+
 def test_blas_has_one_thread_inside_and_its_own_again_afterwards():
     from threadpoolctl import threadpool_info, threadpool_limits
 

@@ -12,6 +12,7 @@ from known_kernels import KERNELS, MODULES, PARALLEL, called
 from fpsolve import initial
 from fpsolve._kernels import (
     characteristics,
+    compiling,
     functionals,
     moebius,
     rotation,
@@ -147,6 +148,33 @@ def test_no_kernel_relaxes_more_than_contraction():
         assert ast.literal_eval(options["cache"]) is True
         assert ast.literal_eval(options["error_model"]) == "numpy"
     assert seen == KERNELS.keys()
+
+
+def test_a_helper_rounds_alike_compiled_for_a_caller_and_on_its_own():
+    # Where it does not say how, numba takes what its first caller allows, and keeps it.
+    @compiling.njit()
+    def rounding(a, product):
+        return a * a - product
+
+    @compiling.njit(fastmath={"contract"})
+    def caller(a, product):
+        return rounding(a, product)
+
+    # Zero as the product is rounded before the difference; 9e-18 if they are fused.
+    assert caller(1.1, 1.1 * 1.1) == rounding(1.1, 1.1 * 1.1) == 0.0
+
+
+def test_no_kernel_leaves_its_arithmetic_to_its_callers():
+    for name, kernel in KERNELS.items():
+        options = getattr(kernel, "compiled", kernel).targetoptions
+        assert options.keys() >= compiling.INHERITED.keys(), name
+    # What acts on registers numba compiles for its callers, the first of them.
+    tree = ast.parse(Path(inspect.getfile(functionals)).read_text())
+    for node in ast.walk(tree):
+        for decorator in getattr(node, "decorator_list", []):
+            if ast.unparse(decorator).startswith("register_jitable"):
+                said = {option.arg for option in getattr(decorator, "keywords", [])}
+                assert said == compiling.INHERITED.keys(), node.name
 
 
 @pytest.mark.parametrize(

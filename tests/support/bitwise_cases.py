@@ -13,6 +13,8 @@ import numpy as np
 
 import fpsolve as fp
 from fpsolve._kernels import threads
+from fpsolve._kernels.tridiagonal import eliminate
+from fpsolve.density.schemes.diffusion import ImplicitDiffusion
 from fpsolve.density.schemes.rotation import RotationDiffusion
 
 GRID = fp.PhaseSpaceGrid(5.0, (20, 16, 16))
@@ -137,8 +139,27 @@ def steps():
     return digest(found.states)
 
 
+def diffusion():
+    """One step of the implicit diffusion alone, which is one kernel with one helper."""
+    diffused = np.empty_like(START)
+    ImplicitDiffusion(MODEL, GRID)(START, 0.0, 0.25, diffused)
+    return digest(diffused)
+
+
+def elimination():
+    """That helper alone."""
+    factors, row = ImplicitDiffusion(MODEL, GRID).factors(0.25), START[0, 0].copy()
+    eliminate(factors.pivots, factors.numbers[2], row)
+    return digest(row)
+
+
 # Kernels that a test compiles once more.
-KERNELS = {"kernel of rotation": (rotation,), "kernel of paths": (steps,)}
+KERNELS = {
+    "kernel of rotation": (rotation,),
+    "kernel of paths": (steps,),
+    "kernel of diffusion": (diffusion,),
+    "kernel of elimination": (elimination,),
+}
 # Everything that computes, by name.
 CASES = {
     **{f"drift_kick, {name}": (drift_kick, options)
