@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Sequence
+from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from fpsolve._support.checks import check_path
 from fpsolve._support.netcdf import reported_damage
@@ -14,6 +15,9 @@ from fpsolve.pages.blocks import Section
 from fpsolve.pages.kinds import PAGES
 from fpsolve.results.kinds import kind_of, named
 from fpsolve.results.load import load, opened
+
+if TYPE_CHECKING:
+    from jinja2 import Template
 
 __all__ = ["html_page", "report", "report_text", "section_of"]
 
@@ -83,9 +87,18 @@ def html_page(sections: Sequence[Section], title: str | None = None) -> str:
     sections : sequence of Section
     title : str, optional
     """
-    from jinja2 import Environment, PackageLoader, StrictUndefined
-
     from fpsolve._support.provenance import versions
+
+    return _template().render(
+        title=_title(sections) if title is None else title,
+        sections=sections,
+        version=versions()["fpsolve"],
+    )
+
+
+@cache
+def _template() -> Template:
+    from jinja2 import Environment, PackageLoader, StrictUndefined
 
     environment = Environment(
         loader=PackageLoader("fpsolve.pages"),
@@ -94,11 +107,7 @@ def html_page(sections: Sequence[Section], title: str | None = None) -> str:
         lstrip_blocks=True,
         undefined=StrictUndefined,
     )
-    return environment.get_template("page.html").render(
-        title=_title(sections) if title is None else title,
-        sections=sections,
-        version=versions()["fpsolve"],
-    )
+    return environment.get_template("page.html")
 
 
 def section_of(result: Any) -> Section:

@@ -128,6 +128,12 @@ def saved(found, path):
     return found.save(path) if hasattr(found, "save") else write_dataset(found, path)
 
 
+@cache
+def file(name):
+    """The file of that result, written once for all tests that read it."""
+    return saved(result(name), result_files.folder() / f"kind {name}.nc")
+
+
 def test_the_three_tables_know_the_same_kinds():
     assert KINDS.keys() == FIGURES.keys() == PAGES.keys()
     assert KINDS.keys() == {name.partition(",")[0] for name in MAKERS}
@@ -162,57 +168,65 @@ def as_dataset(found):
     return found if isinstance(found, xr.Dataset) else found.to_xarray()
 
 
-# What stands in a zarr store as in a netCDF file is a dataset; these have variables of
-# every type between them: numbers, counts, texts, complex ones in two parts.
-IN_ZARR = ("solution", "paths", "check", "rate", "spectral", "spectrum", "averages")
-
-
-@pytest.mark.parametrize(
-    ("name", "ending"),
-    [*((name, "nc") for name in MAKERS), *((name, "zarr") for name in IN_ZARR)],
-)
-def test_a_result_is_loaded_bit_for_bit(name, ending, tmp_path):
-    path = saved(result(name), tmp_path / f"result.{ending}")
-    loaded = fp.load(path)
-    assert type(loaded) is type(result(name))
-    comparison = fp.compare(result(name), loaded)
+def assert_same(name, found):
+    assert type(found) is type(result(name))
+    comparison = fp.compare(result(name), found)
     assert comparison.equal, str(comparison)
     assert not comparison.parameters
-    # And what is loaded is saved as it was.
-    again = saved(loaded, tmp_path / f"again.{ending}")
-    assert fp.compare(result(name), again).equal
 
 
 @pytest.mark.parametrize("name", MAKERS)
-def test_a_result_is_repeated_from_its_file_to_the_last_bit(name, tmp_path):
-    path = saved(result(name), tmp_path / "result.nc")
+def test_a_result_is_loaded_bit_for_bit(name, tmp_path):
+    loaded = fp.load(file(name))
+    assert_same(name, loaded)
+    # And what is loaded is saved as it was: a study as a file again, the others as
+    # stores, which are read in a third of the time.
+    ending = "nc" if isinstance(loaded, xr.Dataset) else "zarr"
+    assert_same(name, fp.load(saved(loaded, tmp_path / f"again.{ending}")))
+
+
+# Studies with variables of every type between them.
+@pytest.mark.parametrize("name", ["rate", "averages"])
+def test_a_study_is_loaded_from_a_store_bit_for_bit(name, tmp_path):
+    assert_same(name, fp.load(saved(result(name), tmp_path / "result.zarr")))
+
+
+@pytest.mark.parametrize("name", MAKERS)
+def test_a_result_is_repeated_from_its_file_to_the_last_bit(name):
     # One of the studies is repeated in processes, as all would be without this.
     in_process = KINDS[name.partition(",")[0]].counts == "cases" and name != "rate"
-    again = fp.rerun(path, **({"workers": 0} if in_process else {}))
+    again = fp.rerun(file(name), **({"workers": 0} if in_process else {}))
     assert type(again) is type(result(name))
     comparison = fp.compare(result(name), again)
     assert comparison.equal, str(comparison)
     assert not comparison.parameters
 
 
-# Where they take the most time; here only that there are as many as allowed.
-DRAWN_IN_TEST_REPORT = {"solution", "paths", "check", "spectrum", "rate", "large-noise",
-                        "small-noise", "energy-tables"}  # fmt: skip
+# Where figures are drawn that take the most time: in test_report, or as PNG below. Here
+# only that there are as many as allowed.
+DRAWN_ELSEWHERE = {
+    "solution", "paths", "check", "spectrum", "rate", "large-noise", "small-noise",
+    "energy-tables", "steady-state", "steady-state, a scheme", "spectral",
+    "spectral, from a grid", "energy", "energy-paths", "hydrodynamic",
+    "hydrodynamic, plain", "hydrodynamic-paths",
+}  # fmt: skip
 
 
-def undrawn(draw, caption, alt):
-    return Figure("data:,", 100, caption, alt)
+@pytest.fixture
+def undrawn_pages(monkeypatch):
+    """Figures of pages are empty: for tests of the words, or of how many there are."""
+    monkeypatch.setattr(
+        "fpsolve.pages.figures.embedded",
+        lambda draw, caption, alt: Figure("data:,", 100, caption, alt),
+    )
 
 
 @pytest.mark.parametrize("name", MAKERS)
-def test_a_result_is_told_with_figures_and_where_it_comes_from(
-    name, tmp_path, monkeypatch
-):
-    if name.partition(",")[0] in DRAWN_IN_TEST_REPORT:
-        monkeypatch.setattr("fpsolve.pages.figures.embedded", undrawn)
-    path = saved(result(name), tmp_path / "result.nc")
-    page = report_text(path)
-    assert "result.nc" in page
+def test_a_result_is_told_with_figures_and_where_it_comes_from(name, request):
+    if name in DRAWN_ELSEWHERE:
+        request.getfixturevalue("undrawn_pages")
+    page = report_text(file(name))
+    assert file(name).name in page
     figures = possible_figures(result(name))
     assert page.count("<figure") == len(figures)
     assert figures or "There is no figure: " in page
@@ -233,7 +247,7 @@ NUMBERS = {
 
 
 @pytest.mark.parametrize("name", NUMBERS)
-def test_a_page_tells_the_numbers(name):
+def test_a_page_tells_the_numbers(name, undrawn_pages):
     assert NUMBERS[name](result(name)) in report_text(result(name))
 
 
@@ -243,9 +257,9 @@ def test_every_figure_of_a_result_is_written(tmp_path):
         assert path.read_bytes().startswith(b"\x89PNG")
 
 
-def test_what_is_loaded_answers_like_what_was_saved(tmp_path):
+def test_what_is_loaded_answers_like_what_was_saved():
     def loaded(name):
-        return fp.load(saved(result(name), tmp_path / f"{name}.nc"))
+        return fp.load(file(name))
 
     spectral, spectrum = loaded("spectral"), loaded("spectrum")
     np.testing.assert_array_equal(
@@ -291,21 +305,23 @@ OWN_RESULTS = {
 
 
 @pytest.mark.parametrize("name", OWN_RESULTS)
-def test_code_of_the_users_own_is_described_and_must_be_given_again(name, tmp_path):
+def test_code_of_the_users_own_is_described_and_must_be_given_again(
+    name, tmp_path, undrawn_pages
+):
     make, argument = OWN_RESULTS[name]
     found = make()
     path = found.save(tmp_path / "own.nc")
     with pytest.warns(UserWarning, match="could not be read back"):
         loaded = fp.load(path)
     assert fp.compare(found, loaded).equal
-    assert fp.compare(path, loaded.save(tmp_path / "again.nc")).equal
+    assert fp.compare(found, loaded.save(tmp_path / "again.zarr")).equal
     with pytest.warns(UserWarning, match="could not be read back"):
         page = report_text(path)
     assert "a user&#39;s own functions" in page
     with pytest.raises(NotRepeatableError, match=f"`{argument}` was your own code"):
         fp.rerun(path)
     given = {"model": OWN.model, "potential": OWN_POTENTIAL}[argument]
-    assert fp.compare(found, fp.rerun(path, **{argument: given})).equal
+    assert fp.compare(found, fp.rerun(loaded, **{argument: given})).equal
 
 
 def test_a_start_of_ones_own_is_named_when_paths_of_a_limit_are_repeated(tmp_path):
@@ -355,7 +371,7 @@ def test_what_is_no_result_is_named():
 
 
 @pytest.mark.parametrize("name", ["hydrodynamic", "hydrodynamic, plain", "energy"])
-def test_a_report_about_a_solution_of_a_limit_tells_its_numbers(name):
+def test_a_report_about_a_solution_of_a_limit_tells_its_numbers(name, undrawn_pages):
     solution = result(name)
     page = report_text(solution)
     assert page.count("<figure") == 1
@@ -367,7 +383,7 @@ def test_a_report_about_a_solution_of_a_limit_tells_its_numbers(name):
         assert f"{solution.errors['relative_entropy'].max():.1e}" in page
 
 
-def test_the_commands_write_what_they_can(fpsolve, tmp_path):
+def test_the_commands_write_what_they_can(fpsolve, tmp_path, undrawn_pages):
     result("hydrodynamic").save(tmp_path / "h.nc")
     result("energy").save(tmp_path / "e.nc")
     assert fpsolve("plot", "h.nc").output.split() == ["h-hydrodynamic.png"]
