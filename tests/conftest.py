@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 from formulas import parse_each_once
 from hypothesis import HealthCheck, settings
+from netcdf_handles import look_up_each_once
 
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.model.laydown import LayDownModel
@@ -36,6 +37,7 @@ settings.register_profile("thorough", max_examples=1000, **COMMON)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "ci"))
 
 parse_each_once()
+look_up_each_once()
 
 
 @pytest.fixture(autouse=True)
