@@ -5,6 +5,7 @@ import os
 import subprocess
 import sys
 from concurrent.futures import ProcessPoolExecutor
+from functools import cache
 from multiprocessing import get_context
 from pathlib import Path
 
@@ -28,10 +29,10 @@ from fpsolve._support.blas import one_blas_thread
 HERE = Path(__file__).parents[1] / "support"
 
 
-@pytest.fixture(scope="module")
-def in_this_process():
-    """Digests with one thread of numba and, see conftest, one of BLAS."""
-    return {name: digest_of(name) for name in CASES}
+@cache
+def in_this_process(name):
+    """The digest with one thread of numba and, see conftest, one of BLAS."""
+    return digest_of(name)
 
 
 def in_another_process(numba_threads, blas_threads, *names, **environment):
@@ -51,14 +52,14 @@ def in_another_process(numba_threads, blas_threads, *names, **environment):
 
 
 @pytest.mark.parametrize("name", THREADED)
-def test_two_threads_give_the_bits_of_one(name, in_this_process, on_threads):
-    assert on_threads(2, lambda: digest_of(name)) == in_this_process[name]
+def test_two_threads_give_the_bits_of_one(name, on_threads):
+    assert on_threads(2, lambda: digest_of(name)) == in_this_process(name)
 
 
 @pytest.mark.processes
-def test_threads_of_blas_and_the_limit_of_numba_change_no_bit(in_this_process):
+def test_threads_of_blas_and_the_limit_of_numba_change_no_bit():
     # Without the limit of one thread the spectrum of the energy process differs.
-    assert in_another_process(1, 2) == in_this_process
+    assert in_another_process(1, 2) == {name: in_this_process(name) for name in CASES}
 
 
 @pytest.mark.nightly
