@@ -59,7 +59,9 @@ def config(tmp_path):
     return path
 
 
-def test_a_run_writes_result_configuration_and_figures(fpsolve, config, tmp_path):
+def test_a_run_writes_result_configuration_and_figures(
+    fpsolve, config, tmp_path, undrawn
+):
     result = fpsolve("run", config, "--out", "out")
     assert result.exit_code == 0, result.output
     figures = ["angle", "entropy", "marginals", "moments", "overview"]

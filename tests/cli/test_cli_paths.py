@@ -69,7 +69,9 @@ def interrupting(at):
     return bar
 
 
-def test_sampling_writes_paths_configuration_and_figures(fpsolve, config, tmp_path):
+def test_sampling_writes_paths_configuration_and_figures(
+    fpsolve, config, tmp_path, undrawn
+):
     result = fpsolve("paths", config, "--out", "out")
     assert result.exit_code == 0, result.output
     names = ["few-ensemble.png", "few-fibre.png", "few.nc", "few.toml"]
@@ -164,7 +166,7 @@ def test_a_process_is_shown_with_its_units(fpsolve, config):
     assert "ξ and s in units of 10 mm, laid down in 0.2 ms" in result.stdout
 
 
-def test_positions_need_not_be_kept(fpsolve, config, tmp_path):
+def test_positions_need_not_be_kept(fpsolve, config, tmp_path, undrawn):
     config.write_text(CONFIG.replace("seed = 5", "seed = 5\nkeep = false"))
     result = fpsolve("paths", config, "--out", "out")
     assert result.exit_code == 0, result.output

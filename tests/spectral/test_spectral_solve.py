@@ -160,7 +160,8 @@ def test_the_decaying_circulation_is_reproduced(noise):
 
 def test_the_mean_of_g_decays_like_its_eigenvalue(solutions):
     # G = e^{−B}(ξ₁ sin α − ξ₂ cos α), L G = −(A²/2) G, from any start.
-    grid = fp.PhaseSpaceGrid(7.0, (64, 64, 32))
+    # Sums of a smooth function: on these cells their error is rounding.
+    grid = fp.PhaseSpaceGrid(7.0, (40, 40, 24))
     xi1, xi2, alpha = grid.mesh()
     g = np.exp(-(xi1**2 + xi2**2) / 2) * (xi1 * np.sin(alpha) - xi2 * np.cos(alpha))
     found = solutions["fixed"]
