@@ -3,6 +3,7 @@
 import json
 import math
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -40,6 +41,7 @@ def initial_density(law, grid):
     )
 
 
+@cache
 def density(model, *, law=START, grid=GRID, ds=1 / 16, extrapolate=True, at=(1.0,)):
     """The density of a model at some s, without asking whether it is right."""
     return fp.solve(
@@ -48,6 +50,7 @@ def density(model, *, law=START, grid=GRID, ds=1 / 16, extrapolate=True, at=(1.0
     )  # fmt: skip
 
 
+@cache
 def paths(model, n_paths=100_000, *, ds=1 / 32, seed=5, law=START, at=(1.0,)):
     return sample_paths(
         model, n_paths, at[-1], ds,
