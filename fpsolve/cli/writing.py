@@ -71,9 +71,9 @@ def print_solution(solution: Solution) -> None:
 
 def print_moments(paths: Paths) -> None:
     """Print means and variances with their standard errors at some arclengths."""
-    from fpsolve.pages.paths import MOMENTS, moment_rows
+    from fpsolve.pages.paths import moment_headings, moment_rows
 
-    print_table(("s", *MOMENTS), moment_rows(paths))
+    print_table(moment_headings(paths), moment_rows(paths))
     print_lines("in parentheses: one standard error, in units of the last digit")
     print_lines(*_duration(paths))
 

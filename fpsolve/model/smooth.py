@@ -104,6 +104,11 @@ class SmoothLayDownModel(FibreModel):
         return 0.5 * self.noise**2 / self.relaxation_length
 
     @property
+    def has_equilibrium(self) -> bool:
+        """False: no density in closed form is stationary, exp(-B) p(κ) least of all."""
+        return False
+
+    @property
     def white_noise_limit(self) -> LayDownModel:
         """The basic model with A = RK, to which this one tends for R → 0."""
         return LayDownModel(self.potential, self.noise, self.curve)

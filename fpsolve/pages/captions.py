@@ -30,6 +30,10 @@ CAPTIONS = {
         "white: contours that enclose 50 and 95 % of the equilibrium.",
         "Histograms of deviation and angle, and moments of the paths",
     ),
+    "paths/ensemble, smooth": (
+        "Histograms at the last saved s, and moments with bands of one standard error.",
+        "Histograms of deviation and angle, and moments of the paths",
+    ),
     "paths/trajectory": (
         "One path: the deviation ξ in the plane, and the same over s.",
         "A single path of the process",

@@ -45,15 +45,23 @@ def embedded(draw: Callable[[], Drawing], caption: str, alt: str) -> Figure:
     return Figure(source, width, caption, alt)
 
 
-def drawings(result: Any) -> list[Figure]:
-    """Return the figures that a result allows, with their captions, as blocks."""
+def drawings(result: Any, variant: str = "") -> list[Figure]:
+    """Return the figures that a result allows, with their captions, as blocks.
+
+    Parameters
+    ----------
+    result : object
+    variant : str
+        What ends the names of captions of its own, where there are such.
+    """
     from fpsolve.plotting.files import possible_figures
 
-    kind = kind_of(result)
-    return [
-        embedded(lambda draw=draw: draw(result), *CAPTIONS[f"{kind}/{name}"])  # type: ignore[misc]
-        for name, draw in possible_figures(result).items()
-    ]
+    found, kind = [], kind_of(result)
+    for name, draw in possible_figures(result).items():
+        usual = f"{kind}/{name}"
+        words = CAPTIONS.get(usual + variant, CAPTIONS[usual])
+        found.append(embedded(lambda draw=draw: draw(result), *words))  # type: ignore[misc]
+    return found
 
 
 def _svg(drawing: Drawing) -> bytes:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from fpsolve.model.smooth import SmoothLayDownModel
 from fpsolve.pages.blocks import Block, Facts, Paragraph, Part, Section, Table
 from fpsolve.pages.equations import curve_equations, mathml, potential_equation
 from fpsolve.pages.figures import drawings
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
     from fpsolve.model.fibre import FibreModel
     from fpsolve.paths.result import Paths
 
-__all__ = ["MOMENTS", "moment_rows", "section"]
+__all__ = ["moment_headings", "moment_rows", "section"]
 
 # Heading: name of the moment.
 MOMENTS = {
@@ -32,26 +33,34 @@ MOMENTS = {
     "Var ξ₁": "variance_xi1",
     "Var ξ₂": "variance_xi2",
     "E cos α": "mean_cos_alpha",
+    "E κ²": "mean_kappa2",
 }
 
 
 def section(paths: Paths, source: str) -> Section:
     """Return the section of a page about paths."""
+    # p_S is not the equilibrium of a smooth model.
+    variant = ", smooth" if isinstance(paths.model, SmoothLayDownModel) else ""
     return Section("Sampled paths", source, [
         Part("Summary", [status_notice(paths.status, paths.message)]),
         Part("Equation", _equations(paths)),
         Part("Parameters", [Facts(_parameters(paths))]),
         *units_part(process_of(paths.provenance)),
         Part("Moments", _moments(paths)),
-        Part("Figures", drawings(paths)),
+        Part("Figures", drawings(paths, variant)),
         provenance_part(paths.provenance, steps="steps of all paths", call=paths.call),
     ])  # fmt: skip
+
+
+def moment_headings(paths: Paths) -> tuple[str, ...]:
+    """The arclength, and those of `MOMENTS` that the paths have."""
+    return "s", *(words for words, name in MOMENTS.items() if name in paths.moments())
 
 
 def moment_rows(paths: Paths) -> list[list[str]]:
     """Arclength, then `MOMENTS` with their standard errors, at some saved s."""
     moments = paths.moments()
-    columns = [moments[name] for name in MOMENTS.values()]
+    columns = [moments[name] for name in MOMENTS.values() if name in moments]
     return [
         [f"{moments.s[row]:.4g}"]
         + [with_error(float(mean[row]), float(error[row])) for mean, error in columns]
@@ -108,7 +117,7 @@ def _kept(paths: Paths) -> str:
 def _moments(paths: Paths) -> list[Block]:
     table = Table(
         "Means and variances over the paths.",
-        ("s", *MOMENTS), moment_rows(paths),
+        moment_headings(paths), moment_rows(paths),
         "In parentheses: one standard error, in units of the last digit.",
     )  # fmt: skip
     said = (

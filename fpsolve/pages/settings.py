@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from fpsolve.grids.smooth import AnyGrid, SmoothPhaseSpaceGrid
+from fpsolve.model.smooth import SmoothLayDownModel
 from fpsolve.pages.blocks import Block, Equation, Facts, Notice, Part
 from fpsolve.pages.equations import (
     energy_equations,
@@ -110,9 +111,17 @@ def model_facts(model: FibreModel | None) -> list[tuple[str, str]]:
         return []
     return [
         ("potential", f"B = {model.potential.formula}"),
-        ("noise", f"A = {model.noise:g}"),
+        ("noise", noise_text(model)),
         ("reference curve", curve_text(model.curve)),
     ]
+
+
+def noise_text(model: FibreModel) -> str:
+    """Return the noise, and the relaxation length of a smooth model."""
+    if not isinstance(model, SmoothLayDownModel):
+        return f"A = {model.noise:g}"
+    length, amplitude = model.relaxation_length, model.curvature_noise
+    return f"A = {model.noise:g}, R = {length:g}, K = A/R = {amplitude:g}"
 
 
 def model_or_unread(

@@ -14,6 +14,7 @@ from fpsolve.plotting.style import (
     COLUMN,
     PAGE,
     new_figure,
+    noise_of,
     paper_style,
     parameters,
     show_frame,
@@ -92,7 +93,7 @@ def plot_nozzles(paths: Sequence[Paths], k: int = 0) -> Figure:
     with paper_style():
         figure, panels = _fibres(several, k)
         for axes, one in zip(panels, several, strict=True):
-            axes.set_title(_process_title(one.model.curve, one.model.noise))
+            axes.set_title(_process_title(one.model.curve, noise_of(one.model)))
     return figure
 
 
@@ -159,6 +160,6 @@ def _box(points: NDArray[np.float64]) -> _Box:
     return (left, right), (bottom, top)
 
 
-def _process_title(curve: Curve, noise: float) -> str:
+def _process_title(curve: Curve, noise: str) -> str:
     name = _PROCESSES.get(curve.kind, curve.kind.replace("_", " "))
-    return rf"{name}:  $\gamma(s) = {curve.latex}$,  $A = {noise:g}$"
+    return rf"{name}:  $\gamma(s) = {curve.latex}$,  {noise}"

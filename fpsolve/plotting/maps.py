@@ -77,6 +77,7 @@ def draw_density(
 ) -> Any:
     """Draw one ξ marginal and the contours of p_S; return the image."""
     stationary = None
+    # Of a smooth model p_S is not the equilibrium.
     if isinstance(model, LayDownModel) and model.potential.normalisable:
         stationary = np.broadcast_to(model.equilibrium(*grid.plane()), values.shape)
     show_frame(axes)

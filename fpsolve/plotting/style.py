@@ -13,6 +13,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from fpsolve.model.fibre import FibreModel
+
 __all__ = [
     "COLOURS",
     "COLUMN",
@@ -25,6 +27,7 @@ __all__ = [
     "formula",
     "legend_above",
     "new_figure",
+    "noise_of",
     "paper_style",
     "parameters",
     "show_frame",
@@ -114,6 +117,12 @@ def drawing(width: float, height: float, title: str = "") -> Iterator[Figure]:
             figure.suptitle(title)
 
 
+def noise_of(model: FibreModel) -> str:
+    """Return the noise, and the relaxation length of a smooth model."""
+    noise, length = f"$A = {model.noise:g}$", getattr(model, "relaxation_length", None)
+    return noise if length is None else f"{noise},  $R = {length:g}$"
+
+
 def parameters(owner: Any) -> str:
     """Return potential, noise and curve of what has a model, for the title of a figure.
 
@@ -124,7 +133,7 @@ def parameters(owner: Any) -> str:
     if model is None:
         return r"$B$ from the user's own functions"
     potential = formula(model.potential)
-    title = rf"$B =$ {potential},  $A = {model.noise:g}$"
+    title = rf"$B =$ {potential},  {noise_of(model)}"
     if model.curve.fixed:
         return title
     if model.curve.autonomous:

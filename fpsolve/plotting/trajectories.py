@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from fpsolve.model.laydown import LayDownModel
 from fpsolve.plotting.fibres import THIN, listed
 from fpsolve.plotting.maps import enclosing_levels
 from fpsolve.plotting.marginals import label_outer
@@ -17,6 +18,7 @@ from fpsolve.plotting.style import (
     COLUMN,
     PAGE,
     drawing,
+    noise_of,
     parameters,
     show_frame,
 )
@@ -40,8 +42,9 @@ def plot_trajectories(paths: Paths | Sequence[Paths], k: int = 0) -> Figure:
     """Path k of each of several ensembles in the ξ plane, as in figure 4 of the paper.
 
     One panel for each, all with the same axes. The dashed line encloses 95 % of
-    p_S = c exp(-B), a circle for an isotropic potential; the dot is where the path
-    begins. Figure 4 itself, for noises from 0 to 10::
+    p_S = c exp(-B), a circle for an isotropic potential; there is none with smooth
+    fibres, whose stationary law it is not. The dot is where the path begins. Figure 4
+    itself, for noises from 0 to 10::
 
         plot_trajectories([
             sample_paths(LayDownModel(QuadraticPotential(), noise), n_paths=1,
@@ -76,7 +79,8 @@ def plot_trajectories(paths: Paths | Sequence[Paths], k: int = 0) -> Figure:
             "draw them in figures of their own."
         )
     trajectories = [one.replay(k) for one in several]
-    region = _equilibrium_region(model.potential)
+    basic = all(isinstance(one.model, LayDownModel) for one in several)
+    region = _equilibrium_region(model.potential) if basic else None
     farthest = [float(np.abs(one.xi).max()) for one in trajectories]
     limit = 1.05 * max(*farthest, 0.0 if region is None else region.limit())
     n_columns = min(len(several), _PER_ROW)
@@ -94,7 +98,7 @@ def plot_trajectories(paths: Paths | Sequence[Paths], k: int = 0) -> Figure:
             panels.flat, several, trajectories, strict=False
         ):
             _draw_deviation(axes, trajectory, region)
-            axes.set_title(f"$A = {one.model.noise:g}$")
+            axes.set_title(noise_of(one.model))
         panels[0, 0].set(xlim=(-limit, limit), ylim=(-limit, limit))
         panels[0, 0].locator_params(nbins=7)
         label_outer(panels, len(several))
@@ -149,7 +153,7 @@ def _equilibrium_region(potential: Potential, n_cells: int = 400) -> _Region | N
 def _trajectory_title(several: list[Paths], has_region: bool) -> str:
     """Return potential, curve and length; the noises are those of the panels."""
     title = parameters(several[0])
-    noise = rf",  $A = {several[0].model.noise:g}$"
+    noise = f",  {noise_of(several[0].model)}"
     lengths = {float(one.s[-1]) - one.s_start for one in several}
     title = title.replace(noise, "", 1)
     if len(lengths) == 1:

@@ -215,7 +215,7 @@ WRONG = {
     ),
     "key of another section": (
         ("noise = 1.0", "noise = 1.0\nspeed = 0.1"),
-        r"section \[model\]: `speed` is not a key\. Keys are noise\.",
+        r"section \[model\]: `speed` is not a key\. Keys are noise, rel",
     ),
     "misspelt option of a scheme": (
         ('"drift_kick"', '"drift_kick"\npositiv = true'),

@@ -265,3 +265,43 @@ def test_a_configuration_for_the_other_command_is_one_sentence():
         with pytest.raises(ConfigurationError, match=message) as caught:
             read_config(text, kind=kind)
         assert "\n" not in str(caught.value)
+
+
+SMOOTH = TEXT.replace("noise = 1.0", "noise = 1.0\nrelaxation_length = 0.5")
+
+
+def test_a_relaxation_length_in_the_section_of_the_model_makes_it_smooth():
+    expected = fp.SmoothLayDownModel(
+        fp.QuadraticPotential(), 0.5, 1.0, fp.MovingBelt(0.1)
+    )
+    assert read(SMOOTH).build().model == expected
+    by_curvature = SMOOTH.replace("noise = 1.0", "curvature_noise = 2.0")
+    assert read(by_curvature).build().model == expected
+    written = read(read(SMOOTH).to_toml())
+    assert written.build().model == expected
+    of_process = read(
+        PROCESS + "relaxation_length = 5e-3\n" + TEXT[TEXT.index("[paths]") :]
+    )
+    assert of_process.build().model.relaxation_length == 0.5
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (
+            ("relaxation_length = 0.5", ""),
+            "`relaxation_length` must be given with `curv",
+        ),
+        (("curvature_noise = 2.0", ""), "exactly one of `noise` and `curvature_noise`"),
+        (("= 0.5", "= -0.5"), "`relaxation_length` must be positive"),
+    ],
+)
+def test_half_a_smooth_model_is_refused(change, message):
+    text = SMOOTH.replace("noise = 1.0", "curvature_noise = 2.0").replace(*change, 1)
+    with pytest.raises(ConfigurationError, match=rf"section \[model\]: {message}"):
+        read(text).build()
+
+
+def test_the_noise_of_a_model_must_be_given():
+    with pytest.raises(ConfigurationError, match=r"section \[model\]: `noise` must be"):
+        read(TEXT.replace("noise = 1.0", "")).build()

@@ -16,6 +16,7 @@ import fpsolve as fp
 from fpsolve.errors import FileFormatError
 from fpsolve.pages.blocks import Figure
 from fpsolve.pages.equations import mathml
+from fpsolve.pages.page import report_text
 
 # What pages show, as that of the documentation.
 pytestmark = pytest.mark.documents
@@ -411,3 +412,16 @@ def test_a_check_comes_back_from_its_dataset():
     for one, other in zip(back.tests, check.tests, strict=True):
         np.testing.assert_equal(vars(one), vars(other))
     xr.testing.assert_identical(back.to_xarray(), check.to_xarray())
+
+
+def test_the_page_of_smooth_paths_has_their_three_equations_and_the_curvature():
+    model = fp.SmoothLayDownModel(fp.QuadraticPotential(), 0.5, 1.0)
+    paths = fp.sample_paths(model, 20, 0.2, 0.1, seed=1)
+    page = report_text(paths)
+    for text in (
+        "dκ = -(κ + ∇B(ξ)·τ⊥(α))/0.5 ds + 2 dW",
+        "E κ²",
+        "R = 0.5, K = A/R = 2",
+    ):
+        assert text in page
+    assert "white: contours" not in page

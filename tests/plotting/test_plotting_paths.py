@@ -304,3 +304,19 @@ def test_every_figure_is_reached_from_the_package(name):
 def test_unknown_figures_are_attribute_errors():
     with pytest.raises(AttributeError, match=r"has no attribute 'plot_web'"):
         plotting.plot_web  # noqa: B018
+
+
+def test_figures_of_smooth_fibres_name_both_lengths_and_draw_no_equilibrium():
+    models = [
+        fp.SmoothLayDownModel(fp.QuadraticPotential(), r, 1.0) for r in (1e-4, 1.0)
+    ]
+    paths = [
+        fp.sample_paths(model, 30, 2.0, 0.1, seed=1, save_at=(1.0, 2.0))
+        for model in models
+    ]
+    figure = plotting.plot_trajectories(paths)
+    titles = [axes.get_title() for axes in figure.axes]
+    assert titles == ["$A = 1$,  $R = 0.0001$", "$A = 1$,  $R = 1$"]
+    assert "p_S" not in figure.get_suptitle()
+    ensemble = plotting.plot_ensemble(paths[0])
+    assert not any("p_S" in axes.get_title() for axes in ensemble.axes)

@@ -18,7 +18,7 @@ from fpsolve.cli.config.kinds import (
 from fpsolve.cli.config.sections import Section
 from fpsolve.errors import ConfigurationError
 from fpsolve.model.curves.belts import FixedBelt
-from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.fibre import FibreModel
 
 __all__ = ["Description", "named_section"]
 
@@ -47,7 +47,7 @@ class Description(Section):
             )
         return self
 
-    def build_model(self) -> LayDownModel:
+    def build_model(self) -> FibreModel:
         """Return the model.
 
         Raises
@@ -72,13 +72,13 @@ class Description(Section):
             for name, table in tables.items()
         )
 
-    def _model(self) -> LayDownModel:
+    def _model(self) -> FibreModel:
         if self.potential is None or self.model is None:
             process = cast(Section, self.process)
-            return cast(LayDownModel, process.make().model)
+            return cast(FibreModel, process.make().model)
         curve = FixedBelt() if self.curve is None else self.curve.make()
         model = self.model.make(potential=self.potential.make(), curve=curve)
-        return cast(LayDownModel, model)
+        return cast(FibreModel, model)
 
 
 @contextmanager

@@ -15,9 +15,9 @@ from fpsolve.evolution.schedule import make_schedule, step_dividing
 from fpsolve.grids import initial
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.model.curves.dictionaries import KINDS as CURVES
-from fpsolve.model.laydown import LayDownModel
 from fpsolve.model.potentials.dictionaries import KINDS as POTENTIALS
 from fpsolve.model.process import Process
+from fpsolve.model.reading import make_model
 
 __all__ = [
     "VARIANCE",
@@ -61,7 +61,7 @@ else:
         section(initial.equilibrium, "equilibrium"),
     )
     SchemeSection = one_of(*(section(SCHEMES[name], name) for name in SCHEMES))
-    ModelSection = section(LayDownModel)
+    ModelSection = section(make_model)
     GridSection = section(PhaseSpaceGrid)
     ProcessSection = section(Process)
 

@@ -11,7 +11,7 @@ from fpsolve._support.checks import check_integer
 from fpsolve.cli.config.description import Description, named_section
 from fpsolve.cli.config.kinds import VARIANCE, GridSection, OutputSection, SpanSection
 from fpsolve.cli.config.sections import Section, one_of, section
-from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.fibre import FibreModel
 from fpsolve.paths.laws import EquilibriumLaw, GaussianLaw, PointLaw
 
 __all__ = ["PathsConfig", "PathsProblem", "PathsSection", "StartSection"]
@@ -56,7 +56,7 @@ class HistogramSection(GridSection):
 class PathsProblem(NamedTuple):
     """What `sample_paths` needs: ``sample_paths(model, **arguments)``."""
 
-    model: LayDownModel
+    model: FibreModel
     arguments: dict[str, Any]
 
 
@@ -96,7 +96,7 @@ class PathsConfig(Description):
         """Return the configuration with the seed of `problem` in it."""
         return self.changed("paths", seed=problem.arguments["seed"])
 
-    def _law(self, model: LayDownModel) -> Any:
+    def _law(self, model: FibreModel) -> Any:
         if self.start is None:
             return PointLaw()
         with named_section("start"):

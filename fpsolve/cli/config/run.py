@@ -68,7 +68,8 @@ class RunConfig(Description):
         MemoryLimitError
             If the densities alone would not fit into memory.
         """
-        model = self.build_model()
+        # Grids and schemes refuse another kind.
+        model = cast(LayDownModel, self.build_model())
         with named_section("grid"):
             grid = self._grid(model)
         self._check_memory(grid, saved_in_memory)
