@@ -15,6 +15,7 @@ SCRIPTS = (
     "entropy_identity.py",
     "path_bias.py",
     "path_marginals.py",
+    "smooth_path_orders.py",
     "ergodic_averages.py",
     "spectral_reference.py",
     "stationary_densities.py",

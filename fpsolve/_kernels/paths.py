@@ -7,15 +7,17 @@ through as a whole, its unused lanes too: a path is then bitwise the same whatev
 neighbours are.
 
 A step of length h of a smooth path starts at (ξ, α, κ) and takes the force at the point
-that half a step along the tangent leads to. While the drift of the angle of the basic
-model, f = -∇B·τ⊥(α), stays as it is, (κ, α, ∫α) at the end of the step are Gaussian
-with a covariance in closed form; they are drawn together. Then
+that half a step along the tangent leads to. Without it, (κ, α, ∫α) at the end of the
+step are Gaussian with a covariance in closed form; their noise is drawn together. Then
 
-    ᾱ = α + J/h, with J = ∫ (α(u) - α) du drawn for the first f,
-    f̄ = -∇B·⟨τ⊥⟩, where ⟨τ⟩ = exp(-V/2h) τ(ᾱ) is the mean tangent of the step,
+    ⟨τ⟩* = exp(-V/2h) τ(ᾱ*), with the mean angle ᾱ* of the step without force,
+    ⟨τ⟩ = ⟨τ⟩* turned as far as -∇B·⟨τ⊥⟩* turns the mean angle,
+    f = -∇B·τ⊥(α) and f̄ = -∇B·⟨τ⊥⟩, the drift at the start and in the mean,
 
 and κ and α end where a drift leads them that changes linearly, from f, with the mean f̄;
-ξ moves by h⟨τ⟩. Here V is what is expected of ∫ (α(u) - ᾱ)² du.
+ξ moves by h⟨τ⟩. Here V is what is expected of ∫ (α(u) - ᾱ)² du. Noise and force act
+through the same mean tangent: for R → 0 the stationary law is kept to leading order in
+the force for A²h of any size.
 """
 
 import math
@@ -601,16 +603,19 @@ def turn_block(ds, weights, spread, shift1, shift2, w):
     spread_of_noise, spread_of_kappa = spread
     for i in range(LANES):
         c, s, kappa = w[COSINE + i], w[SINE + i], w[KAPPA + i]
-        f = w[FORCE1 + i] * s - w[FORCE2 + i] * c
-
         # Half the mean of (α(u) - ᾱ)² over the step, and exp(-x) of it to third order.
         x = spread_of_noise + spread_of_kappa * kappa * kappa
         straight = 1 / (1 + x * (1 + 0.5 * x))
-        mean = m0 * kappa + m1 * f + w[NOISE3 + i]
-        turns = math.floor(mean / TURN + 0.5)
-        x, y = cosine_sine(mean - turns * TURN)
-        mean_c, mean_s = straight * (c * x - s * y), straight * (s * x + c * y)
+        mean = m0 * kappa + w[NOISE3 + i]
+        x, y = cosine_sine(mean - TURN * math.floor(mean / TURN + 0.5))
+        free_c, free_s = straight * (c * x - s * y), straight * (s * x + c * y)
+        # Turned by 2 arctan q for 2q, which differs at the third order only.
+        q = 0.5 * m1 * (w[FORCE1 + i] * free_s - w[FORCE2 + i] * free_c)
+        scale = 1 / (1 + q * q)
+        x, y = (1 - q * q) * scale, 2 * q * scale
+        mean_c, mean_s = free_c * x - free_s * y, free_s * x + free_c * y
 
+        f = w[FORCE1 + i] * s - w[FORCE2 + i] * c
         change = 2 * (w[FORCE1 + i] * mean_s - w[FORCE2 + i] * mean_c - f)
         w[ANGLE + i] = a0 * kappa + a1 * f + a2 * change + w[NOISE2 + i]
         w[KAPPA + i] = k0 * kappa + k1 * f + k2 * change + w[NOISE1 + i]

@@ -55,9 +55,9 @@ def sample_paths(
     """Paths of dξ = τ(α) ds - dγ, dα = -∇B(ξ)·τ⊥(α) ds + A dW, or of smooth fibres.
 
     For a `SmoothLayDownModel` they are paths of dα = κ ds,
-    dκ = -(κ + ∇B·τ⊥)/R ds + K dW: a step draws (κ, α, ∫α) from the Gaussian that they
-    have under the force at its middle, which is then corrected; weakly of order 2,
-    uniformly in R, and exact in (α, κ) without potential.
+    dκ = -(κ + ∇B·τ⊥)/R ds + K dW: a step draws the noise of (κ, α, ∫α) together, and
+    the force acts through its mean tangent; weakly of order 2, uniformly in R, and
+    exact in (α, κ) without potential.
 
     For a `LayDownModel` the splitting T½ R½ D R½ T½ is weakly of order 2; it is exact
     in the angle for frozen ξ, and safe for A = 0, for any A √ds, and through the kink

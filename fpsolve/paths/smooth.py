@@ -24,9 +24,9 @@ __all__ = ["SmoothIntegrator"]
 class SmoothIntegrator(Integrator):
     """The step of the smooth model, for any relaxation length R.
 
-    "splitting" takes the force at ξ + (h/2) τ and draws (κ, α, ∫α) over the step
-    together from the Gaussian that they have under it; then the force is corrected by
-    its mean along the mean tangent of the step. Weakly of order 2, uniformly in R: for
+    "splitting" takes the force at ξ + (h/2) τ and draws the noise of (κ, α, ∫α) over
+    the step together from their Gaussian; the force acts through the mean tangent of
+    the step, which also moves ξ. Weakly of order 2, uniformly in R: for
     R → 0 it becomes a splitting of the basic model. Exact in κ and α without potential.
     """
 

@@ -30,7 +30,9 @@ def quartic() -> fp.CallablePotential:
     )
 
 
-MODELS: dict[str, Callable[[], fp.LayDownModel]] = {
+Model = fp.LayDownModel | fp.SmoothLayDownModel
+
+MODELS: dict[str, Callable[[], Model]] = {
     "quadratic B": lambda: fp.LayDownModel(fp.QuadraticPotential(), NOISE),
     "quadratic B, anisotropic": lambda: fp.LayDownModel(
         fp.QuadraticPotential(1.0, 2.0), NOISE
@@ -41,6 +43,9 @@ MODELS: dict[str, Callable[[], fp.LayDownModel]] = {
     "moving belt": lambda: fp.LayDownModel(
         fp.QuadraticPotential(), NOISE, fp.MovingBelt(0.1)
     ),
+    "smooth, R = 0.1": lambda: fp.SmoothLayDownModel(
+        fp.QuadraticPotential(), 0.1, NOISE
+    ),
     "rotating nozzle": lambda: fp.LayDownModel(
         fp.QuadraticPotential(), NOISE, fp.RotatingNozzle(0.1, 0.5, 2.0)
     ),
@@ -48,7 +53,7 @@ MODELS: dict[str, Callable[[], fp.LayDownModel]] = {
 
 
 def end_positions(
-    model: fp.LayDownModel, method: str, n_paths: int, n_steps: int
+    model: Model, method: str, n_paths: int, n_steps: int
 ) -> tuple[np.ndarray, np.ndarray]:
     """(ξ₁, ξ₂) of paths from the equilibrium of |ξ|²/2 after `n_steps` steps."""
     xi1, xi2, alpha = standard_equilibrium(n_paths)
