@@ -9,7 +9,7 @@ from .density.checkpoints import Checkpoint as Checkpoint
 from .density.resume import resume as resume
 from .density.schemes import drift_kick as drift_kick
 from .density.schemes import semi_lagrangian as semi_lagrangian
-from .density.schemes import smooth_drift_kick as smooth_drift_kick
+from .density.smooth import smooth_drift_kick as smooth_drift_kick
 from .density.solution import Solution as Solution
 from .density.solve import solve as solve
 from .density.steady_state import SteadyState as SteadyState

@@ -61,7 +61,7 @@ def extrapolated(coarse: Solution, fine: Solution, order: int) -> Solution:
         fine.series, coarse.series, gain, reach, allowed, is_extrapolated
     )
     distances = [
-        allowed * diagnostics.l1_distance(p, q, fine.grid)
+        min(allowed, 1.0) * diagnostics.l1_distance(p, q, fine.grid)
         for p, q in zip(fine.densities, coarse.densities, strict=True)
     ]
     errors["density_l1"] = np.array(distances)

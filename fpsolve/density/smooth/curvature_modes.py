@@ -24,6 +24,8 @@ class CurvatureModes:
     ----------
     forward, backward : ndarray, shape (n_kappa, n_kappa)
         E and its inverse.
+    stretching : ndarray, shape (n_kappa, n_kappa)
+        From modes to ∂_κ(κ p) in the cells.
     """
 
     def __init__(self, grid: SmoothPhaseSpaceGrid) -> None:
@@ -38,6 +40,14 @@ class CurvatureModes:
             self.forward[n - 1, 1::2] = -1.0
         norms = (self.forward**2).sum(axis=1, keepdims=True)
         self.backward = np.ascontiguousarray((self.forward / norms).T)
+        slopes = np.zeros((n, n))
+        for number in range(1, (n + 1) // 2):
+            at = 2 * number - 1
+            wave = number * np.pi / grid.kappa_half_width
+            slopes[:, at] = -wave * self.backward[:, at + 1]
+            slopes[:, at + 1] = wave * self.backward[:, at]
+        weighted = self.forward @ (grid.kappa[:, None] * self.backward)
+        self.stretching = slopes @ weighted
 
     @property
     def shape(self) -> tuple[int, int, int, int]:
@@ -49,6 +59,6 @@ class CurvatureModes:
         """The modes of a density."""
         return np.ascontiguousarray(np.matmul(self.forward, p.swapaxes(2, 3)))
 
-    def density(self, modes: Array, out: Array) -> None:
-        """Write the density of the modes, shape grid.shape, into `out`."""
-        np.matmul(modes.swapaxes(2, 3), self.backward.T, out=out)
+    def apply(self, matrix: Array, modes: Array, out: Array) -> None:
+        """Write what a matrix makes of the modes, shape grid.shape, into `out`."""
+        np.matmul(modes.swapaxes(2, 3), matrix.T, out=out)

@@ -15,7 +15,7 @@ __all__ = ["allowance", "curvature_lag"]
 RESOLVED, SLAVED, BETWEEN = 0.25, 20.0, 4.0
 # Shares of the leading terms that the palindrome misses of κ where ds is not short
 # against R, measured for B = |ξ|²/2, A = 1 and 3, 1e-3 ≤ R ≤ 1.
-IN_DENSITY, IN_MEAN, IN_SQUARE = 0.2, 0.2, 0.2
+IN_DENSITY, IN_MEAN, IN_SQUARE = 0.1, 0.1, 0.1
 
 
 def allowance(model: SmoothLayDownModel, ds: float, gain: float) -> float:

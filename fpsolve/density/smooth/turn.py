@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cached_property
+
 import numpy as np
 
 from fpsolve._kernels.rotation import RotationTable, rotate
@@ -56,27 +58,35 @@ class Rotation:
     def __init__(self, model: SmoothLayDownModel, grid: SmoothPhaseSpaceGrid) -> None:
         check_even(grid.phase_space)
         self.grid = grid
-        force1, force2 = gradient_at(model.potential, *grid.plane())
-        n_kappa = grid.shape[3]
-        self.strength = np.repeat(np.hypot(force1, force2).ravel(), n_kappa)
-        angle = np.repeat(np.arctan2(force2, force1).ravel(), n_kappa)
-        self.direction = np.stack([np.cos(angle), np.sin(angle)])
+        self.force = gradient_at(model.potential, *grid.plane())
         self.transforms = angular_transforms(grid.phase_space)
-        self.unchanged = np.ones(self.strength.size)
         self._tables: dict[float, RotationTable] = {}
 
     def __call__(self, u: Array, s: float, ds: float, out: Array) -> None:
         """Turn the modes u into `out`."""
         rows = (-1, u.shape[3])
         rotate(
-            u.reshape(rows), self.table(ds), self.direction, self.transforms,
-            self.unchanged, False, out.reshape(rows),
+            u.reshape(rows), self.table(ds), self._direction, self.transforms,
+            self._unchanged, False, out.reshape(rows),
         )  # fmt: skip
+
+    # One entry for every ξ and mode in κ: made by the first step, when it is known
+    # that the run fits into memory.
+    @cached_property
+    def _direction(self) -> Array:
+        angle = np.arctan2(self.force[1], self.force[0]).ravel()
+        unit = np.stack([np.cos(angle), np.sin(angle)])
+        return np.repeat(unit, self.grid.shape[3], axis=1)
+
+    @cached_property
+    def _unchanged(self) -> Array:
+        return np.ones(self._direction.shape[1])
 
     def table(self, ds: float) -> RotationTable:
         """The matrices of the flow over ds."""
         if ds not in self._tables:
-            made = rotation_table(self.strength, 0.0, ds, self.grid.shape[2], False)
+            each = np.repeat(np.hypot(*self.force).ravel(), self.grid.shape[3])
+            made = rotation_table(each, 0.0, ds, self.grid.shape[2], False)
             # A new dictionary takes the place of the old: a thread may be reading that.
             kept = self._tables if len(self._tables) < 2 else {}
             self._tables = {**kept, ds: made}

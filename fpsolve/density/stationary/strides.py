@@ -50,7 +50,10 @@ class Stride:
         with threads_worth_their_wait(p.size):
             state: State = self.scheme.start(p)
             self.scheme.advance(state, 0.0, self.ds, self.n_steps)
-            return self.scheme.density(state).copy()
+            # A scheme may correct what is read, and go on from what is not.
+            read = getattr(self.scheme, "evolved", self.scheme.density)
+            density: Array = read(state).copy()
+            return density
 
 
 class Strides:
