@@ -32,6 +32,7 @@ SCRIPTS = (
     "performance/run.py",
     "performance/paths.py",
     "performance/reduced.py",
+    "performance/smooth_density.py",
 )
 # For every night: kills by the dozen, times that a shared machine only blurs, and
 # claims that tests hold as well, on other models, shorter arclengths or fewer paths.
@@ -52,6 +53,7 @@ NIGHTLY = {
     "performance/run.py": "",
     "performance/paths.py": "",
     "performance/reduced.py": "",
+    "performance/smooth_density.py": "",
 }
 
 
