@@ -41,7 +41,8 @@ class Solution(Evolution):
     `entropy_dissipation`, `minimum`, `negative_mass`, `boundary_mass`,
     `mass_correction`, the moments `mean_xi1`, `mean_xi2`, `variance_xi1`,
     `variance_xi2`, `covariance`, `mean_cos_alpha`, `mean_sin_alpha`, and `theta` for
-    the semi-Lagrangian scheme.
+    the semi-Lagrangian scheme, `mean_kappa`, `mean_kappa2`, `kappa_boundary_mass` for
+    smooth fibres.
     All of shape (n_recorded,) and dimensionless.
 
     Attributes
@@ -56,8 +57,9 @@ class Solution(Evolution):
     series : dict of ndarray
     saved_s : ndarray, shape (n_saved,)
     densities : ndarray, shape (n_saved, n1, n2, n_alpha)
-        After a run with checkpoints `LazyDensities`, which are read from the disk one
-        by one; `numpy.asarray` makes an array of them.
+        Of a smooth fibre with n_kappa besides. After a run with checkpoints
+        `LazyDensities`, which are read from the disk one by one; `numpy.asarray` makes
+        an array of them.
     entropy_floor : float
         Value H tends to on this grid; see `diagnostics.entropy_floor`.
     status : str
@@ -104,7 +106,7 @@ class Solution(Evolution):
         )
 
     def marginal(self, which: str, s: float) -> Array:
-        """∫ p at s over the other variables: "xi", "alpha", "xi1" or "xi2"."""
+        """∫ p at s over the other variables; `which` as for `diagnostics.marginal`."""
         return diagnostics.marginal(self.density(s), self.grid, which)
 
     def entropy_rate(self, window: tuple[float, float] | None = None) -> DecayRate:

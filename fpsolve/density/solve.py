@@ -58,7 +58,7 @@ def solve(
     checkpoint: Checkpoint | str | os.PathLike[str] | None = None,
     observe: Observe | None = None,
 ) -> Solution:
-    """Density p(ξ, α, s) of equation (7) from p0, with its entropy at every step.
+    """Density p(ξ, α, s) of (7), or of (23) with κ, from p0; entropy at every step.
 
     Nothing a run has computed is lost: every error raised while it runs, and the
     `RunInterrupted` that Ctrl-C becomes, carries what was recorded as `.solution`.
@@ -66,9 +66,9 @@ def solve(
     Parameters
     ----------
     scheme : Scheme
-        From `drift_kick` or `semi_lagrangian`.
+        From `drift_kick` or `semi_lagrangian`, of a smooth fibre `smooth_drift_kick`.
     p0 : ndarray, shape (n1, n2, n_alpha)
-        Initial density.
+        Initial density; with a curvature (n1, n2, n_alpha, n_kappa).
     s_span : (float, float)
         Arclength at the start and at the end.
     ds : float
@@ -83,7 +83,7 @@ def solve(
     mass_tolerance : float
         Largest relative drift of the mass.
     boundary_tolerance : float
-        Largest share of mass in the outermost cells.
+        Largest share of mass in the outermost cells, of ξ and of κ.
     negative_tolerance : float
         Largest ∫ max(−p, 0), relative to the mass. Undershoot of a few percent is
         what high-order interpolation leaves beside fronts.
@@ -95,7 +95,8 @@ def solve(
         exact law e^{−A²s/2}, for isotropic B on a belt at rest. The L1 error of the
         density is at least that.
     reference : ndarray, optional
-        Density the entropy is relative to; p_S by default.
+        Density the entropy is relative to; p_S by default, and nothing of a smooth
+        fibre, for which p_S is not stationary.
     record_every : int
         Steps between two records. Steps in between are cheaper: neighbouring half
         steps merge.
@@ -121,7 +122,8 @@ def solve(
         Before the run: bad arguments, p0 on another grid, too large a run.
     NonFiniteDensityError, MassDriftError, NegativeDensityError, DomainTooSmallError
         During the run, each with its numbers and the partial solution; so is
-        `MassCorrectionError` of the semi-Lagrangian scheme.
+        `MassCorrectionError` of the semi-Lagrangian scheme, and `CurvatureRangeError`
+        of a smooth fibre.
     EntropyRiseError, CirculationError
         Likewise, where a run on a belt at rest breaks a law of the equation.
     ObservationError
