@@ -25,6 +25,8 @@ __all__ = ["AnyGrid", "SmoothPhaseSpaceGrid", "check_smooth_grid"]
 
 _AXES = ("n_xi1", "n_xi2", "n_alpha", "n_kappa")
 _FEWEST_CELLS = 4
+# Squares of curvatures are second moments.
+_LARGEST = 1e100
 
 
 @dataclass(frozen=True)
@@ -66,6 +68,12 @@ class SmoothPhaseSpaceGrid(CellGrid):
     def __post_init__(self) -> None:
         object.__setattr__(self, "half_width", checked_half_width(self.half_width))
         largest = check_positive("kappa_half_width", self.kappa_half_width)
+        if not 1 / _LARGEST <= largest <= _LARGEST:
+            raise ValueError(
+                f"`kappa_half_width` must lie between {1 / _LARGEST:g} and "
+                f"{_LARGEST:g}, got {largest:g}; curvatures are in units of the "
+                "inverse throwing range."
+            )
         object.__setattr__(self, "kappa_half_width", largest)
         object.__setattr__(self, "shape", _checked_shape(self.shape))
 

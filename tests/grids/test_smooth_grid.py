@@ -81,6 +81,7 @@ def test_entropy_relative_to_itself_is_zero_and_dissipation_is_that_of_kappa():
     ("arguments", "error", "words"),
     [
         ((4.0, -1.0, (8, 8, 8, 8)), ValueError, "`kappa_half_width` must be positive"),
+        ((4.0, 1e200, (8, 8, 8, 8)), ValueError, "between 1e-100 and 1e.100, got 1e"),
         ((4.0, np.nan, (8, 8, 8, 8)), ValueError, "`kappa_half_width` must be"),
         ((4.0, 2.0, (8, 8, 8)), ValueError, "`shape` must be four integers"),
         ((4.0, 2.0, (8, 8, 8, 3)), ValueError, r"`shape\[3\] \(n_kappa\)` must be"),
