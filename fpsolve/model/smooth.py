@@ -113,11 +113,6 @@ class SmoothLayDownModel(FibreModel):
         """The basic model with A = RK, to which this one tends for R → 0."""
         return LayDownModel(self.potential, self.noise, self.curve)
 
-    @property
-    def has_equilibrium(self) -> bool:
-        """False: no stationary density of a closed form is known, on any belt."""
-        return False
-
     def drift(
         self,
         xi1: ArrayLike,
