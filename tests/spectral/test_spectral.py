@@ -329,7 +329,7 @@ def test_models_without_a_gap_or_a_basis_are_refused(model, message):
 
 def test_wrong_arguments_are_refused():
     model = quadratic(1.0)
-    with pytest.raises(TypeError, match=r"`model` must be a LayDownModel, got 3\."):
+    with pytest.raises(TypeError, match="`model` must be a LayDownModel, got 3; make"):
         spectrum(3)
     with pytest.raises(ValueError, match=r"`n_eigenvalues` must be at least 1, got 0"):
         spectrum(model, 0)
