@@ -1,6 +1,7 @@
 """Proven bounds lie below the gap, asymptotes meet it, constants are what they are."""
 
 import math
+from functools import cache
 
 import numpy as np
 import pytest
@@ -26,6 +27,7 @@ from fpsolve.studies.rates.bounds import (
 QUADRATIC = QuadraticPotential()
 
 
+@cache
 def gap(potential, noise):
     return spectral_gap(LayDownModel(potential, noise), tolerance=1e-6)
 
