@@ -1,5 +1,6 @@
 """Threads, floating-point errors and what many tests share."""
 
+import gc
 import os
 import signal
 
@@ -30,6 +31,11 @@ def pytest_configure(config):
     choose_examples()
     parse_each_once()
     look_up_each_once()
+
+
+def pytest_collection_finish(session):
+    """What is loaded by now stays: the garbage collector need not look at it again."""
+    gc.freeze()
 
 
 def choose_examples():
