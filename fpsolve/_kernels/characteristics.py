@@ -194,7 +194,7 @@ def nodes_around(x):
     return first, 2
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, fastmath={"contract"}, error_model="numpy")
 def clipped(h, x, y, z, value):
     """value limited to the range of the eight nodes around (x, y, z).
 
