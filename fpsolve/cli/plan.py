@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from fpsolve.cli.console import print_pairs
+from fpsolve.grids.smooth import SmoothPhaseSpaceGrid
 
 if TYPE_CHECKING:
     from fpsolve.cli.config.paths import PathsConfig, PathsProblem
@@ -73,7 +74,10 @@ def _cells(grid: Any) -> str:
     """Say how many cells there are, and in which box."""
     width1, width2 = grid.half_widths
     shape = " x ".join(map(str, grid.shape))
-    return f"{shape} cells, |ξ₁| < {width1:g}, |ξ₂| < {width2:g}"
+    box = f"|ξ₁| < {width1:g}, |ξ₂| < {width2:g}"
+    if isinstance(grid, SmoothPhaseSpaceGrid):
+        box += f", |κ| < {grid.kappa_half_width:g}"
+    return f"{shape} cells, {box}"
 
 
 def _steps(arguments: dict[str, Any]) -> str:

@@ -143,8 +143,12 @@ def test_examples_build_and_survive_writing(name):
 def test_the_configurations_in_the_documentation_build():
     page = Path(__file__).parents[2] / "docs" / "command_line.md"
     blocks = re.findall(r"```toml\n(.*?)```", page.read_text("utf-8"), re.DOTALL)
-    run, process, paths = blocks
+    run, smooth, process, paths = blocks
     assert read_config(run).build().scheme.options["positive"]
+    ends = "[potential]\nkind = 'quadratic'\n" + run[run.index("[run]") :]
+    start = run[run.index("[initial]") : run.index("[scheme]")]
+    smooth_run = read_config(ends + smooth + start).build()
+    assert smooth_run.grid.shape == (32, 32, 24, 18)
     rest = run[run.index("[grid]") :]
     assert read_config(process + rest).build().model.belt_speed == 0.1
     sampled = read_config(process + paths, kind=PathsConfig).build()

@@ -13,7 +13,7 @@ from fpsolve.cli.config.sections import Section, one_of, section
 from fpsolve.density.schemes.known import SCHEMES
 from fpsolve.evolution.schedule import make_schedule, step_dividing
 from fpsolve.grids import initial
-from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.grids.dictionaries import make_grid
 from fpsolve.model.curves.dictionaries import KINDS as CURVES
 from fpsolve.model.potentials.dictionaries import KINDS as POTENTIALS
 from fpsolve.model.process import Process
@@ -62,7 +62,7 @@ else:
     )
     SchemeSection = one_of(*(section(SCHEMES[name], name) for name in SCHEMES))
     ModelSection = section(make_model)
-    GridSection = section(PhaseSpaceGrid)
+    GridSection = section(make_grid)
     ProcessSection = section(Process)
 
 

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple, cast
 
-import numpy as np
-from numpy.typing import NDArray
-
+from fpsolve._support.arrays import Array
 from fpsolve._support.memory import check_memory, required_memory
 from fpsolve.cli.config.description import Description, named_section
 from fpsolve.cli.config.kinds import (
@@ -17,9 +15,10 @@ from fpsolve.cli.config.kinds import (
     SchemeSection,
 )
 from fpsolve.density.suggestions import SuggestedStep, suggest_step
-from fpsolve.grids.initial import gaussian
-from fpsolve.grids.phase_space import PhaseSpaceGrid
-from fpsolve.model.laydown import LayDownModel
+from fpsolve.grids.initial import gaussian, with_curvature
+from fpsolve.grids.smooth import AnyGrid, SmoothPhaseSpaceGrid
+from fpsolve.model.fibre import FibreModel
+from fpsolve.model.smooth import SmoothLayDownModel
 from fpsolve.paths.laws import GaussianLaw
 from fpsolve.studies.suggested_grid import suggest_grid
 
@@ -32,9 +31,9 @@ _FEWEST_ARRAYS = 3
 class Problem(NamedTuple):
     """What `solve` needs: ``solve(scheme, p0, **arguments)``."""
 
-    model: LayDownModel
-    grid: PhaseSpaceGrid
-    p0: NDArray[np.float64]
+    model: FibreModel
+    grid: AnyGrid
+    p0: Array
     scheme: Any
     arguments: dict[str, Any]
 
@@ -68,13 +67,12 @@ class RunConfig(Description):
         MemoryLimitError
             If the densities alone would not fit into memory.
         """
-        # Grids and schemes refuse another kind.
-        model = cast(LayDownModel, self.build_model())
+        model = self.build_model()
         with named_section("grid"):
             grid = self._grid(model)
         self._check_memory(grid, saved_in_memory)
         with named_section("initial"):
-            p0 = self.initial.make(grid=grid, potential=model.potential)
+            p0 = self._start(model, grid)
         with named_section("scheme"):
             scheme = self.scheme.make(grid=grid, model=model)
         with named_section("run"):
@@ -86,17 +84,39 @@ class RunConfig(Description):
 
         They are there already unless they were suggested.
         """
-        grid = {"half_width": problem.grid.half_width, "shape": problem.grid.shape}
+        cells: Any = problem.grid
+        grid = {"half_width": cells.half_width, "shape": cells.shape[:3]}
+        if isinstance(cells, SmoothPhaseSpaceGrid):
+            largest, n_kappa = cells.kappa_half_width, cells.shape[3]
+            grid |= {"kappa_half_width": largest, "n_kappa": n_kappa}
         run = {**self.run.model_dump(), "ds": float(problem.arguments["ds"])}
         tables = {**self.model_dump(exclude_none=True), "grid": grid, "run": run}
         return RunConfig.model_validate(tables)
 
-    def _grid(self, model: LayDownModel) -> PhaseSpaceGrid:
-        if self.grid is None:
-            return suggest_grid(
-                model, self.run.tolerance, initial=self._law(), s_end=self.run.s_end
+    def _grid(self, model: Any) -> Any:
+        if self.grid is not None:
+            return self.grid.make()
+        if isinstance(model, SmoothLayDownModel):
+            raise ValueError(
+                "`half_width`, `shape`, `kappa_half_width` and `n_kappa` must be given "
+                "for a model with a relaxation length, got none; nothing suggests them."
             )
-        return cast(PhaseSpaceGrid, self.grid.make())
+        return suggest_grid(
+            model, self.run.tolerance, initial=self._law(), s_end=self.run.s_end
+        )
+
+    def _start(self, model: Any, grid: Any) -> Array:
+        """The initial density; of a smooth fibre with the curvature of a free one."""
+        if not isinstance(grid, SmoothPhaseSpaceGrid):
+            return cast(Array, self.initial.make(grid=grid, potential=model.potential))
+        if not isinstance(model, SmoothLayDownModel):
+            raise ValueError(
+                "`relaxation_length` of [model] must be given on a grid with a "
+                "curvature, got none; leave out `n_kappa` and `kappa_half_width`."
+            )
+        cells = grid.phase_space
+        p = self.initial.make(grid=cells, potential=model.potential)
+        return with_curvature(p, grid, model.curvature_variance)
 
     def _law(self) -> GaussianLaw | None:
         """The law of the start, which a suggested box is to hold."""
@@ -104,7 +124,7 @@ class RunConfig(Description):
             return None
         return GaussianLaw(**self.initial.model_dump(exclude={"kind"}))
 
-    def _check_memory(self, grid: PhaseSpaceGrid, saved_in_memory: bool) -> None:
+    def _check_memory(self, grid: AnyGrid, saved_in_memory: bool) -> None:
         # `solve` knows how much a scheme needs, but by then the initial density is
         # made already, and tables as large as the grid.
         n_saved = len(self.run.saves()) if saved_in_memory else 0
@@ -112,7 +132,7 @@ class RunConfig(Description):
             required_memory(grid.nbytes, _FEWEST_ARRAYS, n_saved, self.run.extrapolate)
         )
 
-    def _arguments(self, model: LayDownModel, grid: PhaseSpaceGrid) -> dict[str, Any]:
+    def _arguments(self, model: Any, grid: AnyGrid) -> dict[str, Any]:
         run, ds = self.run, self.run.ds
         if ds is None:
             suggested = suggest_step(model, grid, run.tolerance)

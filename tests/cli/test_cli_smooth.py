@@ -1,0 +1,93 @@
+"""`fpsolve run` solves for smooth fibres what a file asks for."""
+
+import numpy as np
+import pytest
+from command_line import assert_mistake, files
+
+import fpsolve as fp
+from fpsolve.cli.config import RunConfig, load_config
+
+CONFIG = """
+[potential]
+kind = "quadratic"
+
+[model]
+noise = 1.0
+relaxation_length = 0.2
+
+[curve]
+kind = "moving_belt"
+speed = 0.1
+
+[grid]
+half_width = 5.0
+shape = [10, 10, 8]
+kappa_half_width = 8.5
+n_kappa = 16
+
+[initial]
+kind = "gaussian"
+variance = 1.2
+
+[scheme]
+kind = "smooth_drift_kick"
+
+[run]
+s_end = 0.5
+ds = 0.125
+boundary_tolerance = 0.1
+
+[output]
+name = "smooth"
+figures = false
+"""
+
+
+@pytest.fixture
+def run(fpsolve, tmp_path):
+    def run(text=CONFIG):
+        path = tmp_path / "smooth.toml"
+        path.write_text(text, encoding="utf-8")
+        return fpsolve("run", path, "--out", tmp_path / "out")
+
+    return run
+
+
+def test_a_smooth_run_from_a_file_is_that_of_the_library(run, tmp_path):
+    answer = run()
+    assert answer.exit_code == 0, answer.output
+    assert "|κ| < 8.5" in answer.output
+    found = fp.load(tmp_path / "out/smooth.nc")
+    problem = load_config(tmp_path / "smooth.toml", RunConfig).build()
+    solved = fp.solve(problem.scheme, problem.p0, **problem.arguments)
+    assert np.array_equal(found.final, solved.final)
+    # The file beside the result says it all again.
+    again = load_config(tmp_path / "out/smooth.toml", RunConfig).build()
+    assert (again.grid, again.model) == (problem.grid, problem.model)
+    assert np.array_equal(again.p0, problem.p0)
+
+
+@pytest.mark.parametrize(
+    ("line", "instead", "message"),
+    [
+        ("n_kappa = 16", "", "`kappa_half_width` and `n_kappa` must be given together"),
+        ("n_kappa = 16", "n_kappa = 3", "`shape[3] (n_kappa)` must be"),
+        ("relaxation_length = 0.2", "", "`relaxation_length` of [model] must be given"),
+        ("relaxation_length = 0.2", "relaxation_length = 0.0",
+         "`relaxation_length` must be positive"),
+        ("smooth_drift_kick", "drift_kick", "`model` must be a LayDownModel"),
+        ("kappa_half_width = 8.5", "kappa_half_width = 17.0",
+         "`grid` must have cells in κ no wider than"),
+    ],
+)  # fmt: skip
+def test_what_does_not_fit_costs_a_line_and_leaves_no_file(
+    run, tmp_path, line, instead, message
+):
+    assert_mistake(run(CONFIG.replace(line, instead)), message)
+    assert not (tmp_path / "out").exists() or files(tmp_path / "out") == []
+
+
+def test_a_grid_of_a_smooth_fibre_has_to_be_given(run):
+    start, rest = CONFIG.split("[grid]")
+    answer = run(start + rest[rest.index("[initial]") :])
+    assert_mistake(answer, "section [grid]: `half_width`, `shape`, `kappa_half_width`")
