@@ -21,6 +21,7 @@ from fpsolve.cli.options import (
     read_config,
     set_threads,
 )
+from fpsolve.grids.smooth import SmoothPhaseSpaceGrid
 
 if TYPE_CHECKING:
     from fpsolve.cli.config.run import Problem
@@ -112,15 +113,19 @@ def _compare(
     paths_ds: float | None,
     **options: Any,
 ) -> CrossCheck:
+    from fpsolve.grids import diagnostics
     from fpsolve.studies.agreement.cross_check import cross_check
 
-    given = problem.arguments
+    given, start = problem.arguments, problem.p0
+    if isinstance(problem.grid, SmoothPhaseSpaceGrid):
+        # Paths and density both begin with the curvature of a free fibre.
+        start = diagnostics.marginal(start, problem.grid, "xi_alpha")
     tolerances = {name: given[name] for name in given if name.endswith("_tolerance")}
     typer.echo(f"equation  {problem.model.equation}")
     with frame.computing() as report:
         return cross_check(
             problem.model,
-            problem.p0,
+            start,
             places,
             scheme=problem.scheme,
             ds=float(given["ds"]),

@@ -67,6 +67,24 @@ def test_a_smooth_run_from_a_file_is_that_of_the_library(run, tmp_path):
     assert np.array_equal(again.p0, problem.p0)
 
 
+def test_a_smooth_configuration_is_checked_against_paths(fpsolve, tmp_path):
+    path = tmp_path / "smooth.toml"
+    path.write_text(CONFIG.replace("ds = 0.125", "ds = 0.0625"), encoding="utf-8")
+    words = (
+        "--n-paths",
+        "2000",
+        "--seed",
+        "3",
+        "--no-figures",
+        "--out",
+        tmp_path / "out",
+    )
+    answer = fpsolve("check", path, *words)
+    assert answer.exit_code == 0, answer.output
+    assert "all 14 tests passed" in answer.output
+    assert fp.load(tmp_path / "out/smooth-check.nc").agrees
+
+
 @pytest.mark.parametrize(
     ("line", "instead", "message"),
     [

@@ -177,7 +177,9 @@ def _of_check(dataset: xr.Dataset, about: Mapping[str, Any]) -> Held:
     yield "n_paths", about.get("n_paths")
     yield "ds", about.get("solver", {}).get("ds")
     yield "paths_ds", about.get("sampler", {}).get("ds")
-    yield "grid", [dataset.sizes.get(axis, 0) for axis in ("xi1", "xi2", "alpha")]
+    cells = [dataset.sizes.get(axis, 0) for axis in ("xi1", "xi2", "alpha")]
+    # Nothing is compared along the curvature: its cells are those of the grid.
+    yield "grid", [*cells, *about.get("grid", {}).get("shape", [])[3:]]
 
 
 def _of_tables(dataset: xr.Dataset, about: Mapping[str, Any]) -> Held:

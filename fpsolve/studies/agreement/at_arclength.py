@@ -13,6 +13,7 @@ from fpsolve._support.arrays import Array
 from fpsolve.density.solution import Solution
 from fpsolve.density.steady_state import SteadyState
 from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.model.laydown import LayDownModel
 from fpsolve.studies.agreement.cell_probabilities import cell_probabilities
 from fpsolve.studies.agreement.coarser import within_error
 from fpsolve.studies.agreement.goodness_of_fit import (
@@ -184,8 +185,8 @@ class Station:
 
 
 def _bias_factor(density: Solution | SteadyState, paths: Paths) -> float:
-    """Bias of the paths relative to the density's error; NaN for other methods."""
-    if paths.method != "splitting":
+    """Bias of the paths relative to the density's error; NaN for other splittings."""
+    if paths.method != "splitting" or not isinstance(paths.model, LayDownModel):
         return math.nan
     return step_bias(float(paths.ds), density.ds, 1.0)
 

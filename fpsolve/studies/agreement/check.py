@@ -14,8 +14,8 @@ from fpsolve._support.arrays import Array
 from fpsolve.evolution.call import Call
 from fpsolve.evolution.saved import Saved
 from fpsolve.evolution.schedule import index_of
-from fpsolve.grids.phase_space import PhaseSpaceGrid
-from fpsolve.model.laydown import LayDownModel
+from fpsolve.grids.smooth import AnyGrid
+from fpsolve.model.fibre import FibreModel
 from fpsolve.studies.agreement.layout import CHECK
 from fpsolve.studies.agreement.outcome import AgreementTest
 from fpsolve.studies.agreement.wording import report
@@ -32,9 +32,9 @@ class CrossCheck(Saved):
 
     Attributes
     ----------
-    model : LayDownModel or None
+    model : LayDownModel or SmoothLayDownModel or None
         That of the density.
-    grid : PhaseSpaceGrid
+    grid : PhaseSpaceGrid or SmoothPhaseSpaceGrid
     s : ndarray, shape (n_s,)
     tests : tuple of AgreementTest
     false_alarm : float
@@ -55,8 +55,8 @@ class CrossCheck(Saved):
     kind: ClassVar[str] = "check"
     layout = CHECK
 
-    model: LayDownModel | None
-    grid: PhaseSpaceGrid
+    model: FibreModel | None
+    grid: AnyGrid
     s: Array
     tests: tuple[AgreementTest, ...]
     false_alarm: float

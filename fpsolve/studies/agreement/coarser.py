@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -13,11 +14,14 @@ from numpy.typing import NDArray
 from fpsolve._support.arrays import Array
 from fpsolve.density.schemes.dictionaries import describe_scheme, scheme_from_dict
 from fpsolve.density.schemes.scheme import Scheme
+from fpsolve.density.smooth.marginal import without_curvature
 from fpsolve.density.solution import Solution
 from fpsolve.density.solve import solve
 from fpsolve.errors import FpsolveError
 from fpsolve.grids import diagnostics
+from fpsolve.grids.initial import with_curvature
 from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.grids.smooth import SmoothPhaseSpaceGrid
 from fpsolve.studies.agreement.cell_probabilities import cell_probabilities
 from fpsolve.studies.agreement.partition import equal_probability_boxes
 from fpsolve.studies.starts import density_and_law
@@ -62,9 +66,14 @@ class GridError(NamedTuple):
     distance: float
 
 
-def coarsened(grid: PhaseSpaceGrid) -> PhaseSpaceGrid:
-    """The same box with cells longer by about 4/3, in even numbers."""
-    n1, n2, n_alpha = (2 * math.ceil(3 * n / 8) for n in grid.shape)
+def coarsened(grid: Any) -> Any:
+    """The same box with cells longer by about 4/3, in even numbers.
+
+    Those of a curvature stay: they have to resolve it, and paths are not asked for it.
+    """
+    n1, n2, n_alpha = (2 * math.ceil(3 * n / 8) for n in grid.shape[:3])
+    if isinstance(grid, SmoothPhaseSpaceGrid):
+        return replace(grid, shape=(n1, n2, n_alpha, grid.shape[3]))
     return PhaseSpaceGrid(grid.half_widths, (n1, n2, n_alpha))
 
 
@@ -159,7 +168,8 @@ def coarser_runs(
         "extrapolate": solution.errors is not None,
         **{**(solve_options or {}), **_LENIENT, "record_every": 10**9},
     }
-    span, found, grid = (0.0, float(solution.s[-1])), [], scheme.grid
+    span, found = (0.0, float(solution.s[-1])), []
+    grid: Any = scheme.grid
     try:
         for _ in range(2):
             grid = coarsened(grid)
@@ -167,17 +177,21 @@ def coarser_runs(
             with warnings.catch_warnings():
                 # That the coarser grid is poor is what is looked at.
                 warnings.simplefilter("ignore", UserWarning)
-                start = _start(law, grid)
-            found.append(solve(again, start, span, solution.ds, **options))
+                start = _start(law, grid, scheme.model)
+            run = solve(again, start, span, solution.ds, **options)
+            found.append(without_curvature(run))
     except (FpsolveError, ValueError, TypeError) as error:
         return str(error)
     return tuple(found)
 
 
-def _start(law: Any, grid: PhaseSpaceGrid) -> Array:
+def _start(law: Any, grid: Any, model: Any) -> Array:
     """The density that a law has on a grid, of mass 1."""
     from fpsolve.paths.laws import DensityLaw
 
+    if isinstance(grid, SmoothPhaseSpaceGrid):
+        basic = _start(law, grid.phase_space, model)
+        return with_curvature(basic, grid, model.curvature_variance)
     if isinstance(law, DensityLaw):
         density = law.density(grid)
     else:

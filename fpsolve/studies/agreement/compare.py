@@ -9,6 +9,7 @@ import numpy as np
 
 from fpsolve._support.blas import one_blas_thread
 from fpsolve._support.checks import check_integer, check_kind, check_real
+from fpsolve.density.smooth.marginal import without_curvature
 from fpsolve.density.solution import Solution
 from fpsolve.density.steady_state import SteadyState
 from fpsolve.studies.agreement.at_arclength import TESTS_PER_STATION, Station
@@ -62,6 +63,7 @@ def compare(
         If both have no s in common, or there are too few paths.
     """
     check_options(false_alarm, cells)
+    grid, density = density.grid, without_curvature(density)
     from fpsolve.paths.result import Paths
 
     check_kind("paths", paths, Paths, "it is what `sample_paths` returns")
@@ -73,7 +75,7 @@ def compare(
     ]
     return CrossCheck(
         model=model_of(density, paths),
-        grid=density.grid,
+        grid=grid,
         s=chosen,
         tests=tuple(test for station in stations for test in station.tests()),
         false_alarm=false_alarm,

@@ -15,12 +15,16 @@ from fpsolve._support.progress import ProgressCallback
 from fpsolve.density.schemes import drift_kick
 from fpsolve.density.schemes.dictionaries import described_scheme
 from fpsolve.density.schemes.scheme import Scheme
+from fpsolve.density.smooth.marginal import without_curvature
+from fpsolve.density.smooth.smooth_drift_kick import SmoothDriftKick
 from fpsolve.density.solution import Solution
 from fpsolve.density.solve import solve
 from fpsolve.errors import ToleranceError
 from fpsolve.evolution.call import recorded
-from fpsolve.grids.phase_space import PhaseSpaceGrid
-from fpsolve.model.laydown import LayDownModel
+from fpsolve.grids.initial import with_curvature
+from fpsolve.grids.smooth import AnyGrid, SmoothPhaseSpaceGrid, check_smooth_grid
+from fpsolve.model.fibre import FibreModel
+from fpsolve.model.smooth import SmoothLayDownModel
 from fpsolve.studies.agreement.check import CrossCheck
 from fpsolve.studies.agreement.coarser import (
     coarser_runs,
@@ -47,11 +51,11 @@ RECORD_EVERY = 8
 
 @recorded(scheme=described_scheme)
 def cross_check(
-    model: LayDownModel,
+    model: FibreModel,
     p0: Any,
     s: float | Iterable[float],
     *,
-    grid: PhaseSpaceGrid | None = None,
+    grid: AnyGrid | None = None,
     n_paths: int = 1_000_000,
     seed: int,
     ds: float | None = None,
@@ -67,6 +71,9 @@ def cross_check(
 ) -> CrossCheck:
     """Density of (7) against paths of (6): do both give the same law at every s?
 
+    Of a smooth fibre the density of (23) and paths of (22), which begin with the
+    curvature of a free fibre; compared are position and angle.
+
     Solves for the density, samples paths from the same start, and tests at every s
     the counts of paths in cells of phase space against the integrals of the density
     over them (χ², and the largest single cell), the marginals of ξ1, ξ2 and α (χ²),
@@ -76,12 +83,12 @@ def cross_check(
 
     Parameters
     ----------
-    model : LayDownModel
+    model : LayDownModel or SmoothLayDownModel
     p0 : ndarray, shape grid.shape, or GaussianLaw, EquilibriumLaw, DensityLaw
-        Start of both: a density on the grid, or a law of `fpsolve.paths`.
+        Start of both: a density of (ξ, α) on the grid, or a law of `fpsolve.paths`.
     s : float or iterable of float
         Arclengths at which to compare.
-    grid : PhaseSpaceGrid
+    grid : PhaseSpaceGrid or SmoothPhaseSpaceGrid
         May be left out with a scheme or a DensityLaw, which have one.
     n_paths : int
         Standard errors fall like 1/√n_paths.
@@ -137,17 +144,24 @@ def cross_check(
     n_paths = check_integer("n_paths", n_paths, at_least=FEWEST_PATHS)
     check_options(false_alarm, cells)
     grid = _grid_of(grid, scheme, p0)
-    p0, law = density_and_law(p0, grid)
+    plain = grid.phase_space if isinstance(grid, SmoothPhaseSpaceGrid) else grid
+    p0, law = density_and_law(p0, plain)
     if isinstance(law, DensityLaw):
         _check_start(law, n_paths)
+    if isinstance(model, SmoothLayDownModel):
+        check_smooth_grid(grid)
+        p0 = with_curvature(p0, cast(Any, grid), model.curvature_variance)
     scheme = _scheme_for(model, grid, p0) if scheme is None else scheme
     _check_scheme(scheme, model, grid)
-    ds = solver_step(model, grid, s, n_paths) if ds is None else float(ds)
+    if ds is None:
+        ds = solver_step(cast(Any, model), cast(Any, grid), s, n_paths)
+    ds = float(ds)
     solution = solve(
         scheme, p0, (0.0, float(s[-1])), ds,
         save_at=s.tolist(), extrapolate=extrapolate, progress=progress,
         **{"record_every": RECORD_EVERY, **(solve_options or {})},
     )  # fmt: skip
+    solution = without_curvature(solution)
     coarser = coarser_runs(solution, scheme, law, solve_options)
     _check_resolved(solution, coarser, s)
     if paths_ds is None:
@@ -155,12 +169,13 @@ def cross_check(
     paths = sample_paths(
         model, n_paths, float(s[-1]), paths_ds,
         seed=seed, initial=law, save_at=s.tolist(), method=method,
-        histogram=grid, keep=False, client=client, progress=progress,
+        histogram=plain, keep=False, client=client, progress=progress,
     )  # fmt: skip
     check = compare(
         solution, paths, s=s, false_alarm=false_alarm, cells=cells,
         coarser=() if isinstance(coarser, str) else coarser,
     )  # fmt: skip
+    check = replace(check, grid=grid)
     if isinstance(coarser, str):
         check = replace(check, solver={**check.solver, "coarser": coarser})
     return check
@@ -177,12 +192,10 @@ def _checked_places(s: float | Iterable[float]) -> Array:
     return chosen
 
 
-def _grid_of(
-    grid: PhaseSpaceGrid | None, scheme: Scheme | None, p0: Any
-) -> PhaseSpaceGrid:
+def _grid_of(grid: Any, scheme: Scheme | None, p0: Any) -> Any:
     for owner in (scheme, p0):
         known = getattr(owner, "grid", None)
-        if grid is None and isinstance(known, PhaseSpaceGrid):
+        if grid is None and isinstance(known, AnyGrid):
             grid = known
     if grid is None:
         raise TypeError(
@@ -192,7 +205,7 @@ def _grid_of(
     return grid
 
 
-def _check_scheme(scheme: Scheme, model: LayDownModel, grid: PhaseSpaceGrid) -> None:
+def _check_scheme(scheme: Scheme, model: FibreModel, grid: AnyGrid) -> None:
     if scheme.model != model:
         raise ValueError(
             f"`scheme` must solve the model that is checked, got one for\n"
@@ -205,8 +218,10 @@ def _check_scheme(scheme: Scheme, model: LayDownModel, grid: PhaseSpaceGrid) -> 
         )
 
 
-def _scheme_for(model: LayDownModel, grid: PhaseSpaceGrid, p0: Array) -> Scheme:
+def _scheme_for(model: Any, grid: Any, p0: Array) -> Any:
     """drift_kick, balanced where the density stays within reach of e^{−B}."""
+    if isinstance(model, SmoothLayDownModel):
+        return SmoothDriftKick(model, grid)
     if model.potential.normalisable:
         balanced = drift_kick(model, grid, balanced=True)
         try:

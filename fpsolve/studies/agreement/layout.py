@@ -18,7 +18,7 @@ from fpsolve.evolution.layout import (
     check_counts,
 )
 from fpsolve.evolution.parts import Model
-from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.grids.dictionaries import grid_from_dict
 from fpsolve.studies.agreement.outcome import MARGINALS, AgreementTest
 
 __all__ = ["CHECK"]
@@ -93,8 +93,8 @@ class _Cells(Part):
         return {**centres, "grid": to_json(result.grid.to_dict())}
 
     def read(self, source: Source) -> dict[str, Any]:
-        grid = PhaseSpaceGrid.from_dict(source.about["grid"])
-        for axis, n in zip(MARGINALS, grid.shape, strict=True):
+        grid = grid_from_dict(source.about["grid"])
+        for axis, n in zip(MARGINALS, grid.shape[:3], strict=True):
             check_counts("grid", n, source.dataset.sizes[axis], f"`{axis}`")
         return {"grid": grid}
 

@@ -15,7 +15,7 @@ from fpsolve.density.solution import Solution
 from fpsolve.density.steady_state import SteadyState
 from fpsolve.evolution.schedule import index_of
 from fpsolve.grids import row_sums as functionals
-from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.fibre import FibreModel
 
 __all__ = ["MOMENTS", "Reference", "describe", "model_of", "places", "reference_at"]
 
@@ -115,10 +115,10 @@ def describe(density: Solution | SteadyState) -> dict[str, Any]:
     }
 
 
-def model_of(density: Solution | SteadyState, paths: Any) -> LayDownModel | None:
+def model_of(density: Solution | SteadyState, paths: Any) -> FibreModel | None:
     """The model of a density, or of the paths where it does not know its own."""
     found = paths.model if density.model is None else density.model
-    return found if isinstance(found, LayDownModel) else None
+    return found if isinstance(found, FibreModel) else None
 
 
 def _among(s: float, available: Array) -> bool:
