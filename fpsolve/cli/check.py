@@ -21,7 +21,6 @@ from fpsolve.cli.options import (
     read_config,
     set_threads,
 )
-from fpsolve.grids.smooth import SmoothPhaseSpaceGrid
 
 if TYPE_CHECKING:
     from fpsolve.cli.config.run import Problem
@@ -114,6 +113,7 @@ def _compare(
     **options: Any,
 ) -> CrossCheck:
     from fpsolve.grids import diagnostics
+    from fpsolve.grids.smooth import SmoothPhaseSpaceGrid
     from fpsolve.studies.agreement.cross_check import cross_check
 
     given, start = problem.arguments, problem.p0

@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from fpsolve.cli.console import print_pairs
-from fpsolve.grids.smooth import SmoothPhaseSpaceGrid
 
 if TYPE_CHECKING:
     from fpsolve.cli.config.paths import PathsConfig, PathsProblem
@@ -72,6 +71,8 @@ def suggestions(problem: Problem) -> dict[str, str]:
 
 def _cells(grid: Any) -> str:
     """Say how many cells there are, and in which box."""
+    from fpsolve.grids.smooth import SmoothPhaseSpaceGrid
+
     width1, width2 = grid.half_widths
     shape = " x ".join(map(str, grid.shape))
     box = f"|ξ₁| < {width1:g}, |ξ₂| < {width2:g}"
