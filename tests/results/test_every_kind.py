@@ -34,6 +34,7 @@ OWN_PROCESS = fp.EnergyProcess(OWN_POTENTIAL, 0.5)
 GRID = fp.PhaseSpaceGrid(5.0, (12, 12, 8))
 WIDE = fp.PhaseSpaceGrid(6.0, (24, 24, 16))
 FINER = fp.PhaseSpaceGrid(5.5, (24, 24, 16))
+CURVED = fp.SmoothPhaseSpaceGrid(6.0, 5.5, (12, 12, 8, 16))
 PLANE = fp.PlaneGrid(5.0, (16, 16))
 NARROW = fp.paths.GaussianLaw((0.5, 0.0), 0.8, 1.0, 1.0)
 # The grids are coarse ones, made for quick tests.
@@ -47,6 +48,11 @@ def start(xi1, xi2):
 
 def start_on(grid):
     return fp.initial.gaussian(grid, (0.5, 0.0), 0.8, angle=1.0, concentration=1.0)
+
+
+def curved_start():
+    basic = start_on(CURVED.phase_space)
+    return fp.initial.with_curvature(basic, CURVED, SMOOTH.curvature_variance)
 
 
 def hydrodynamic(limit=LIMIT, **options):
@@ -64,6 +70,10 @@ MAKERS = {
         fp.drift_kick(REST, GRID), start_on(GRID), (0.0, 0.5), 0.25, save_at=[0.5],
         **LENIENT,
     ),
+    "solution, smooth": lambda: fp.solve(
+        fp.smooth_drift_kick(SMOOTH, CURVED), curved_start(), (0.0, 0.5), 0.25,
+        reference=curved_start(), **SEVERAL | {"save_at": [0.0, 0.5]}, **LENIENT,
+    ),
     "paths": lambda: fp.sample_paths(BELT, 40, 0.5, 0.25, seed=3, initial=NARROW),
     "paths, smooth": lambda: fp.sample_paths(
         SMOOTH, 40, 0.5, 0.25, seed=3, initial=((0.5, 0.0), 1.0, 0.2)
@@ -75,6 +85,11 @@ MAKERS = {
     "steady-state": lambda: fp.steady_state(REST, WIDE, error_tolerance=1.0),
     "steady-state, a scheme": lambda: fp.steady_state(
         fp.drift_kick(REST, WIDE), ds=0.25, error_tolerance=1.0
+    ),
+    "steady-state, smooth": lambda: fp.steady_state(
+        fp.SmoothLayDownModel(QUADRATIC, 0.3, 2.0),
+        fp.SmoothPhaseSpaceGrid(5.5, 13.4, (14, 14, 12, 16)),
+        ds=0.1, tolerance=1e-4, error_tolerance=1.0, boundary_tolerance=0.1,
     ),
     "spectral": lambda: fp.spectral_solve(
         REST, NARROW, [0.0, 1.0], tolerance=1e-2
