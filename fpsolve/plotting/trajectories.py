@@ -83,8 +83,8 @@ def plot_trajectories(paths: Paths | Sequence[Paths], k: int = 0) -> Figure:
     region = _equilibrium_region(model.potential) if basic else None
     farthest = [float(np.abs(one.xi).max()) for one in trajectories]
     limit = 1.05 * max(*farthest, 0.0 if region is None else region.limit())
-    n_columns = min(len(several), _PER_ROW)
-    n_rows = math.ceil(len(several) / n_columns)
+    n_rows = math.ceil(len(several) / _PER_ROW)
+    n_columns = math.ceil(len(several) / n_rows)
     width = COLUMN if n_columns == 1 else PAGE
     height = n_rows * ((width - 0.6) / n_columns + 0.2) + 0.6
     title = _trajectory_title(several, region is not None)
