@@ -16,6 +16,15 @@ CAPTIONS = {
         "∫ p dα at saved s; white: contours of the equilibrium.",
         "Maps of the density over the plane at saved arclengths",
     ),
+    "solution/overview, smooth": (
+        "The run on one page: ∫ p dα dκ at four saved s; relative entropy to a given "
+        "reference, or else the mean position; law of the angle; spread.",
+        "Maps of the density over the plane, and curves of position, angle and spread",
+    ),
+    "solution/marginals, smooth": (
+        "∫ p dα dκ at saved s.",
+        "Maps of the density over the plane at saved arclengths",
+    ),
     "solution/angle": ("∫ p dξ at saved s.", "Law of the angle at saved arclengths"),
     "solution/entropy": (
         "Relative entropy above its value on the grid, and its dissipation.",
@@ -35,7 +44,7 @@ CAPTIONS = {
         "Histograms of deviation and angle, and moments of the paths",
     ),
     "paths/trajectory": (
-        "One path: the deviation ξ in the plane, and the same over s.",
+        "One path: the deviation ξ in the plane.",
         "A single path of the process",
     ),
     "paths/fibre": (

@@ -43,6 +43,8 @@ _NAMES = {"density_l1": "saved densities p, in the L¹ norm"}
 def section(solution: Solution, source: str) -> Section:
     """Return the section of a page about a solution."""
     process = process_of(solution.provenance)
+    # p_S, whose contours are drawn else, is not the equilibrium of a smooth model.
+    variant = ", smooth" if isinstance(solution.model, SmoothLayDownModel) else ""
     return Section("Density of a run", source, [
         Part("Summary", _summary(solution)),
         Part("Equation", _equations(solution)),
@@ -50,7 +52,7 @@ def section(solution: Solution, source: str) -> Section:
         *units_part(process),
         Part("Numbers at saved arclengths", _numbers(solution, process)),
         Part("Accuracy", _accuracy(solution)),
-        Part("Figures", drawings(solution)),
+        Part("Figures", drawings(solution, variant)),
         provenance_part(solution.provenance, call=solution.call),
     ])  # fmt: skip
 
@@ -179,6 +181,8 @@ def _numbers(solution: Solution, process: Process | None) -> list[Block]:
 
 def _entropy_note(solution: Solution) -> str:
     model, floor = solution.model, solution.entropy_floor
+    if solution.reference is not None:
+        return "H is relative to the density that was given as `reference`."
     if not np.isfinite(floor):
         return "There is no equilibrium that H could be relative to."
     said = "H is relative to p_S = exp(-B)/(2πZ)"

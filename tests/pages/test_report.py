@@ -425,3 +425,17 @@ def test_the_page_of_smooth_paths_has_their_three_equations_and_the_curvature():
     ):
         assert text in page
     assert "white: contours" not in page
+
+
+def test_the_page_of_a_smooth_density_speaks_of_no_equilibrium():
+    model = fp.SmoothLayDownModel(fp.QuadraticPotential(), 0.3, 2.0)
+    largest = 5.2 * np.sqrt(model.curvature_variance)
+    grid = fp.SmoothPhaseSpaceGrid(6.0, largest, (16, 16, 8, 16))
+    basic = fp.initial.gaussian(grid.phase_space, (0.0, 0.0), 1.0)
+    p0 = fp.initial.with_curvature(basic, grid, model.curvature_variance)
+    scheme = fp.smooth_drift_kick(model, grid)
+    page = report_text(fp.solve(scheme, p0, (0.0, 0.25), 0.125))
+    assert "There is no equilibrium that H could be relative to." in page
+    assert "in white" not in page and "white: contours" not in page
+    given = fp.solve(scheme, p0, (0.0, 0.125), 0.125, reference=p0)
+    assert "H is relative to the density that was given" in report_text(given)
