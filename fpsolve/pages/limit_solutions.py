@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from fpsolve.model.laydown import LayDownModel
 from fpsolve.pages.blocks import (
     Block,
     Equation,
@@ -37,7 +38,7 @@ from fpsolve.pages.settings import (
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from fpsolve.model.laydown import LayDownModel
+    from fpsolve.model.fibre import FibreModel
     from fpsolve.reduced.energy.solution import EnergySolution
     from fpsolve.reduced.hydrodynamic.solution import HydrodynamicSolution
 
@@ -61,7 +62,7 @@ def hydrodynamic_section(solution: HydrodynamicSolution, source: str) -> Section
     model = None if solution.limit is None else solution.limit.model
     cells = " × ".join(map(str, solution.grid.shape))
     width1, width2 = solution.grid.half_widths
-    parameter = [] if model is None else [("ε = 1/A²", f"{1.0 / model.noise**2:g}")]
+    parameter = [] if model is None else _parameters(solution.limit)
     items = [
         *model_facts(model),
         *parameter,
@@ -107,14 +108,23 @@ def _section(
     ])  # fmt: skip
 
 
+def _parameters(limit: Any) -> list[tuple[str, str]]:
+    """ε, and the factor F of a smooth fibre."""
+    small = ("ε = 1/A²", f"{limit.epsilon:g}")
+    if limit.diffusivity == limit.epsilon:
+        return [small]
+    return [small, ("F", f"{limit.diffusivity / limit.epsilon:g}")]
+
+
 def limit_equation(
-    model: LayDownModel | None, provenance: Mapping[str, Any]
+    model: FibreModel | None, provenance: Mapping[str, Any]
 ) -> list[Block]:
     """Return the hydrodynamic limit of a model, or how one of a user's own told it."""
+    factor = "" if model is None or isinstance(model, LayDownModel) else "F"
     equation: Equation = mathml(
-        r"\partial_s \mathcal{P} = \nabla\cdot(\varepsilon\,\nabla\mathcal{P}"
-        r" + (\varepsilon\,\nabla B - v\,e_1)\,\mathcal{P})",
-        "∂ₛ𝒫 = ∇·(ε∇𝒫 + (ε∇B - v e₁) 𝒫)",
+        rf"\partial_s \mathcal{{P}} = \nabla\cdot(\varepsilon {factor}\,\nabla"
+        r"\mathcal{P} + (\varepsilon\,\nabla B - v\,e_1)\,\mathcal{P})",
+        f"∂ₛ𝒫 = ∇·(ε{factor}∇𝒫 + (ε∇B - v e₁) 𝒫)",
     )
     if model is None:
         return [equation, *unread_model(provenance)]

@@ -101,7 +101,9 @@ def test_just_below_the_limiting_speed_the_limit_exists():
 
 
 def test_arguments_of_other_kinds_are_refused():
-    with pytest.raises(TypeError, match="`model` must be a LayDownModel, got 1"):
+    with pytest.raises(
+        TypeError, match=r"`model` must be a LayDownModel or a Smooth.*1"
+    ):
         HydrodynamicLimit(1)
     limit = HydrodynamicLimit(MODEL)
     start = GRID.evaluate(narrow)

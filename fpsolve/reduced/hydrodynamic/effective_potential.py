@@ -1,4 +1,4 @@
-"""Φ = B − v ξ₁/ε: the belt is a constant force, and a constant force a potential."""
+"""Φ = (B − v ξ₁/ε)/F: the belt is a constant force, and such a force a potential."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from fpsolve._support.arrays import Array
 from fpsolve.grids.plane import PlaneGrid
-from fpsolve.model.laydown import LayDownModel, check_model
+from fpsolve.model.fibre import FibreModel, check_fibre_model
 from fpsolve.model.potentials.at_points import value_at
 from fpsolve.model.potentials.evidence import check_wells_met
 from fpsolve.model.potentials.linear import LinearPotential
@@ -20,13 +20,14 @@ from fpsolve.model.potentials.potential import Potential
 from fpsolve.model.potentials.power import PowerPotential
 from fpsolve.model.potentials.quadratic import QuadraticPotential
 from fpsolve.model.potentials.wells import check_places
+from fpsolve.reduced.hydrodynamic.persistence import Persistence
 
 __all__ = ["EffectivePotential", "check_limit"]
 
 
 @dataclass(frozen=True)
 class EffectivePotential:
-    """Φ(ξ) = B(ξ) − A²v ξ₁; the limit equation is ∂ₛ𝒫 = ε∇·(∇ + ∇Φ)𝒫.
+    """Φ(ξ) = (B(ξ) − A²v ξ₁)/F; the limit equation is ∂ₛ𝒫 = εF ∇·(∇ + ∇Φ)𝒫.
 
     Parameters
     ----------
@@ -34,24 +35,30 @@ class EffectivePotential:
         Buckling potential B.
     pull : float
         v/ε = A²v.
+    temperature : float
+        F, by which a smooth fibre diffuses faster than the basic one, at the same
+        drift; 1 for the basic model.
     """
 
     potential: Potential
     pull: float
+    temperature: float = 1.0
 
     def value(self, xi1: ArrayLike, xi2: ArrayLike) -> Array:
         """Φ, in the broadcast shape of the arguments."""
-        return np.asarray(self.potential.value(xi1, xi2) - np.multiply(self.pull, xi1))
+        tilted = self.potential.value(xi1, xi2) - np.multiply(self.pull, xi1)
+        return np.asarray(tilted / self.temperature)
 
     def on(self, plane: PlaneGrid) -> Array:
         """Φ in the cells of a plane, finite; ValueError otherwise."""
         xi1, xi2 = plane.mesh()
-        return value_at(self.potential, xi1, xi2) - np.multiply(self.pull, xi1)
+        tilted = value_at(self.potential, xi1, xi2) - np.multiply(self.pull, xi1)
+        return np.asarray(tilted / self.temperature)
 
     def gradient(self, xi1: ArrayLike, xi2: ArrayLike) -> tuple[Array, Array]:
         """∇Φ, two arrays in the broadcast shape."""
         slope1, slope2 = self.potential.gradient(xi1, xi2)
-        return slope1 - self.pull, slope2
+        return (slope1 - self.pull) / self.temperature, slope2 / self.temperature
 
     def density(self, xi1: ArrayLike, xi2: ArrayLike) -> Array:
         """exp(−Φ)/∫exp(−Φ), the stationary density of the limit.
@@ -73,17 +80,19 @@ class EffectivePotential:
     def log_normalisation(self) -> float:
         """ln ∫ exp(−Φ) dξ over the plane; infinite when it does not exist.
 
-        In closed form for quadratic and linear B and without a belt, by quadrature
-        otherwise.
+        In closed form for quadratic and linear B, and for the basic model without a
+        belt; by quadrature otherwise.
         """
-        at_rest = self.potential.log_partition_function
-        if not self.pull:
-            return at_rest
+        if not self.pull and self.temperature == 1:
+            return self.potential.log_partition_function
         if isinstance(self.potential, QuadraticPotential):
-            return at_rest + 0.5 * (self.pull * self.potential.sigma1) ** 2
+            at_rest = self.potential.log_partition_function + math.log(self.temperature)
+            longer = (self.pull * self.potential.sigma1) ** 2 / self.temperature
+            return at_rest + 0.5 * longer
         slope = slope_of(self.potential)
         if slope is not None:
-            return _log_normalisation_of_linear(slope, self.pull)
+            pull = self.pull / self.temperature
+            return _log_normalisation_of_linear(slope / self.temperature, pull)
         places = check_places("well_places", self.potential.well_places)
         return normalisation_of(self.value, well_places=places).log_value
 
@@ -105,9 +114,9 @@ def _log_normalisation_of_linear(slope: float, pull: float) -> float:
     return math.log(2 * math.pi * slope) - 1.5 * math.log(room)
 
 
-def check_limit(model: LayDownModel) -> EffectivePotential:
+def check_limit(model: FibreModel) -> EffectivePotential:
     """Φ of a model, if its limit exists; ValueError or TypeError otherwise."""
-    check_model(model)
+    check_fibre_model(model)
     if not model.noise > 0:
         raise ValueError(
             f"`noise` must be positive for the limit of large noise, got "
@@ -124,19 +133,20 @@ def check_limit(model: LayDownModel) -> EffectivePotential:
             "`speed` must lie strictly between -1 and 1, got "
             f"{model.belt_speed:g}; a faster belt tears the fibre."
         )
-    phi = EffectivePotential(model.potential, model.noise**2 * model.belt_speed)
+    pull, temperature = model.noise**2 * model.belt_speed, Persistence.of(model).factor
+    phi = EffectivePotential(model.potential, pull, temperature)
     check_confinement(model, phi)
     return phi
 
 
-def moves_along_belt(model: LayDownModel) -> bool:
+def moves_along_belt(model: FibreModel) -> bool:
     """Whether γ' = −v e₁ at s = 0."""
     along, across = model.curve.velocity(0.0)
     return bool(along == -model.belt_speed and across == 0)
 
 
-def check_confinement(model: LayDownModel, phi: EffectivePotential) -> None:
-    """Raise ValueError unless exp(−B + A²v ξ₁) is integrable."""
+def check_confinement(model: FibreModel, phi: EffectivePotential) -> None:
+    """Raise ValueError unless exp(−Φ) is integrable."""
     if not model.potential.normalisable:
         raise ValueError(
             f"`potential` must confine, got {model.potential!r}: exp(-B) has no finite "
@@ -145,6 +155,12 @@ def check_confinement(model: LayDownModel, phi: EffectivePotential) -> None:
         )
     if phi.normalisable:
         return
+    if not phi.pull:
+        raise ValueError(
+            "`relaxation_length` must be small enough for exp(-B/F) to be integrable, "
+            f"F = {phi.temperature:.4g} by which a curved fibre spreads farther, got "
+            f"{model.potential!r}; shorten it, or choose a potential that grows faster."
+        )
     slope = slope_of(model.potential)
     limit = "" if slope is None else f", below K/A² = {slope / model.noise**2:.4g}"
     raise ValueError(

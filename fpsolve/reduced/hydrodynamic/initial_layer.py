@@ -10,6 +10,7 @@ from fpsolve._support.arrays import Array, check_finite_numbers
 from fpsolve._support.checks import check_non_negative, check_positive
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.grids.plane import PlaneGrid
+from fpsolve.reduced.hydrodynamic.persistence import Persistence
 
 __all__ = ["InitialLayer"]
 
@@ -25,6 +26,11 @@ class InitialLayer:
     term above. For B = 0 without a belt this is the exact mean
     E(ξ_s − ξ_0) = 2ε(1 − e^{−A²s/2}) E τ.
 
+    Of a smooth fibre, whose curvature at the start is the stationary Gaussian of a free
+    one, independent of ξ and α, p is the density of (ξ, α). With
+    ψ(s) = (A²/2)(s − R(1 − e^{−s/R})) in place of A²s/2 the same holds, but that
+    2ε is 2εF and the last term (1/2π) ∇·J ∫_s^∞ e^{−ψ(u)} du; see `Persistence`.
+
     Exact: mass; the composite approximation has the given start up to ε p₁. Its
     plane density is accurate to O(ε²) and p itself to O(ε) within the layer, while s
     is not large against 1/ε. Can fail: the corrected start is negative where
@@ -37,6 +43,8 @@ class InitialLayer:
     grid : PhaseSpaceGrid
     noise : float
         A > 0.
+    relaxation_length : float, optional
+        R of a smooth fibre.
 
     Attributes
     ----------
@@ -44,29 +52,37 @@ class InitialLayer:
     density_at_start : ndarray, shape (n1, n2)
         𝒫₀ = ∫ p0 dα.
     corrected_start : ndarray, shape (n1, n2)
-        𝒫₀ − 2ε∇·J: where the slow equation starts.
+        𝒫₀ − 2εF∇·J: where the slow equation starts.
 
     References
     ----------
     [KMW09]_, below equation (18); [BGKMW08]_.
     """
 
-    def __init__(self, p0: Array, grid: PhaseSpaceGrid, noise: float) -> None:
+    def __init__(
+        self,
+        p0: Array,
+        grid: PhaseSpaceGrid,
+        noise: float,
+        relaxation_length: float = 0.0,
+    ) -> None:
         self.plane = PlaneGrid.of(grid)
         self.p0, self.grid = checked_start(p0, grid), grid
         self.noise = check_positive("noise", noise)
         self.density_at_start = self.p0.sum(axis=2) * grid.spacing[2]
-        self.displaced = 2.0 / self.noise**2 * self._divergence()
+        length = check_non_negative("relaxation_length", relaxation_length)
+        self.persistence = Persistence(self.noise, length)
+        self.displaced = self.persistence.length * self._divergence()
 
     @property
     def corrected_start(self) -> Array:
-        """𝒫₀ − 2ε∇·J, shape (n1, n2)."""
+        """𝒫₀ − 2εF∇·J, shape (n1, n2)."""
         return np.asarray(self.density_at_start - self.displaced)
 
     @property
     def length(self) -> float:
-        """2/A²: the arclength over which the first harmonic falls by e."""
-        return 2.0 / self.noise**2
+        """2F/A²: the arclength over which the first harmonic falls by e for R = 0."""
+        return self.persistence.length
 
     def density(self, s: float) -> Array:
         """The layer at s >= 0, to be added to the slow part; ``grid.shape``."""
@@ -74,15 +90,12 @@ class InitialLayer:
         waves = np.fft.rfft(self.p0, axis=2)
         # The slow part has the mean over the angle; in the layer only the mass that
         # is still on its way is left of it.
-        waves[:, :, 0] = self.grid.shape[2] / (2 * math.pi) * self.displaced
-        waves *= np.exp(-self._rates() * s)
-        return np.fft.irfft(waves, n=self.grid.shape[2], axis=2)
-
-    def _rates(self) -> Array:
-        """n²A²/2 of every harmonic n; that of 0 follows the first."""
         degrees = np.arange(self.grid.shape[2] // 2 + 1)
-        degrees[0] = 1
-        return np.asarray(0.5 * self.noise**2 * degrees**2)
+        waves *= np.exp(-self.persistence.turned(s) * degrees**2)
+        on_its_way = self.persistence.beyond(s) / self.persistence.length
+        share = self.grid.shape[2] / (2 * math.pi) * on_its_way
+        waves[:, :, 0] = share * self.displaced
+        return np.fft.irfft(waves, n=self.grid.shape[2], axis=2)
 
     def _divergence(self) -> Array:
         """∇·∫ τ p0 dα, from fluxes through the faces; none through the walls."""

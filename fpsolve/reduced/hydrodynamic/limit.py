@@ -1,4 +1,4 @@
-"""∂ₛ𝒫 = ∇·(ε∇ + ε∇B − v e₁)𝒫: the limit of large noise as an object."""
+"""∂ₛ𝒫 = ∇·(εF∇ + ε∇B − v e₁)𝒫: the limit of large noise as an object."""
 
 from __future__ import annotations
 
@@ -23,6 +23,7 @@ from fpsolve.reduced.hydrodynamic import reconstruction, run, sampling
 from fpsolve.reduced.hydrodynamic.equation import LimitEquation
 from fpsolve.reduced.hydrodynamic.initial_layer import InitialLayer
 from fpsolve.reduced.hydrodynamic.ornstein_uhlenbeck import OrnsteinUhlenbeckLimit
+from fpsolve.reduced.hydrodynamic.persistence import Persistence
 from fpsolve.reduced.hydrodynamic.scharfetter_gummel import gibbs_masses
 from fpsolve.reduced.hydrodynamic.solution import (
     HydrodynamicSolution,
@@ -43,30 +44,36 @@ def _described_start(P0: Any, arguments: Mapping[str, Any]) -> Kept:
 
 
 class HydrodynamicLimit(LimitEquation):
-    """∂ₛ𝒫 = ∇·(ε∇ + ε∇B − v e₁)𝒫, ε = 1/A²: the model for large noise.
+    """∂ₛ𝒫 = ∇·(εF∇ + ε∇B − v e₁)𝒫, ε = 1/A²: the model for large noise.
 
-    The angle forgets itself over the arclength 2/A², and what is left of p is its
+    The angle forgets itself over the arclength 2F/A², and what is left of p is its
     plane density, p ≈ 𝒫/2π. The belt is a constant force, so that the whole drift is
-    −ε∇Φ with Φ = B − v ξ1/ε, and 𝒫_S = c exp(−B + v ξ1/ε) is stationary, in detailed
-    balance. The paper prints −v ξ1/ε; its own remark 3.7, with the mean (A²v, 0),
-    needs the plus.
+    −εF∇Φ with Φ = (B − v ξ1/ε)/F, and 𝒫_S = c exp(−(B − v ξ1/ε)/F) is stationary, in
+    detailed balance. The paper prints −v ξ1/ε; its own remark 3.7, with the mean
+    (A²v, 0), needs the plus.
+
+    F = 1 for the basic model. A smooth fibre keeps its direction longer: for A → ∞ at
+    fixed a = A²R/2, and R → 0 with it, F = ₁F₁(1; a+1; a), and the drift is the same.
+    The corrections are O(ε²), in p that of order ε, see `reconstruct`.
 
     Parameters
     ----------
-    model : LayDownModel
+    model : LayDownModel or SmoothLayDownModel
         Any potential that confines, positive noise, FixedBelt or MovingBelt.
 
     Attributes
     ----------
-    model : LayDownModel
+    model : LayDownModel or SmoothLayDownModel
     epsilon : float
         ε = 1/A².
+    diffusivity : float
+        εF.
 
     Raises
     ------
     ValueError
         If the noise is zero, the curve does not move at constant speed, or
-        exp(−B + v ξ1/ε) is not integrable: a potential that does not confine, or
+        exp(−(B − v ξ1/ε)/F) is not integrable: a potential that does not confine, or
         B = K‖ξ‖ and v >= K ε.
     TypeError
         If `model` is something else.
@@ -198,9 +205,9 @@ class HydrodynamicLimit(LimitEquation):
 
         Eigenvalues of the symmetrised generator, all real, of order 2 in the cell
         width. They also depend on the box: modes of B = K‖ξ‖ reach far, and above
-        εK²/4, where its essential spectrum begins, eigenvalues are those of the box.
+        εK²/4F, where its essential spectrum begins, eigenvalues are those of the box.
         Exact values: ε(k/σ1² + l/σ2²) for the quadratic potential on any belt, and
-        the gap 2εK²/9 of the linear one on a belt at rest.
+        the gap 2εK²/9F of the linear one on a belt at rest.
 
         Raises
         ------
@@ -241,7 +248,7 @@ class HydrodynamicLimit(LimitEquation):
         save_at: Iterable[float] | None = None,
         method: str | None = None,
     ) -> sampling.HydrodynamicPaths:
-        """Paths of dξ = (−ε∇B + v e₁) ds + √(2ε) dW.
+        """Paths of dξ = (−ε∇B + v e₁) ds + √(2εF) dW.
 
         Parameters
         ----------
@@ -275,10 +282,15 @@ class HydrodynamicLimit(LimitEquation):
         )  # fmt: skip
 
     def reconstruct(self, P: Array, grid: PhaseSpaceGrid, *, order: int = 1) -> Array:
-        """p ≈ 𝒫/2π + ε p₁ on the phase-space grid; see `reconstruction.reconstruct`."""
-        potential, noise = self.model.potential, self.model.noise
-        return reconstruction.reconstruct(P, grid, potential, noise, order=order)
+        """p ≈ 𝒫/2π + ε p₁ on the phase-space grid; see `reconstruction.reconstruct`.
+
+        Of a smooth fibre that is the density of (ξ, α).
+        """
+        noise, length = Persistence.of(self.model)
+        return reconstruction.reconstruct(
+            P, grid, self.model.potential, noise, order=order, relaxation_length=length
+        )
 
     def initial_layer(self, p0: Array, grid: PhaseSpaceGrid) -> InitialLayer:
         """What the slow equation does not see of a start p0; see `InitialLayer`."""
-        return InitialLayer(p0, grid, self.model.noise)
+        return InitialLayer(p0, grid, *Persistence.of(self.model))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from fpsolve._support.arrays import Array, check_finite_numbers, check_numbers
 from fpsolve._support.checks import check_integer, check_non_negative, check_pair
 from fpsolve.grids.initial import checked_covariance
-from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.fibre import FibreModel
 from fpsolve.model.potentials.quadratic import QuadraticPotential
 from fpsolve.reduced.hydrodynamic.effective_potential import check_limit
 
@@ -21,15 +21,16 @@ __all__ = ["OrnsteinUhlenbeckLimit"]
 
 @dataclass(frozen=True, eq=False)
 class OrnsteinUhlenbeckLimit:
-    """dξ_i = (−ξ_i/(A²σ_i²) + v δ_i1) ds + (√2/A) dW_i from a Gaussian: exact.
+    """dξ_i = (−ξ_i/(A²σ_i²) + v δ_i1) ds + (√(2F)/A) dW_i from a Gaussian: exact.
 
     The hydrodynamic limit for B = (ξ1²/σ1² + ξ2²/σ2²)/2. It stays Gaussian; the
     component i relaxes at the rate k_i = 1/(A²σ_i²) to the mean (A²v σ1², 0) and the
-    variance σ_i².
+    variance Fσ_i². F = ₁F₁(1; a+1; a) for a smooth fibre with a = A²R/2, 1 for the
+    basic one: a curvature spreads the fibre, and changes neither rates nor means.
 
     Parameters
     ----------
-    model : LayDownModel
+    model : LayDownModel or SmoothLayDownModel
         With a QuadraticPotential, positive noise, and a belt of constant speed.
     mean : (float, float)
         Mean at s = 0.
@@ -43,20 +44,21 @@ class OrnsteinUhlenbeckLimit:
 
     References
     ----------
-    [KMW09]_, remark 3.7 (for σ1 = σ2 = 1).
+    [KMW09]_, remark 3.7 (for σ1 = σ2 = 1, basic model).
     """
 
-    model: LayDownModel
+    model: FibreModel
     mean_at_start: Array
     covariance_at_start: Array
+    _temperature: float = field(repr=False)
 
     def __init__(
         self,
-        model: LayDownModel,
+        model: FibreModel,
         mean: tuple[float, float] = (0.0, 0.0),
         variance: ArrayLike = 1.0,
     ) -> None:
-        check_limit(model)
+        phi = check_limit(model)
         if not isinstance(model.potential, QuadraticPotential):
             raise ValueError(
                 "`potential` must be quadratic for an Ornstein-Uhlenbeck limit, got "
@@ -64,23 +66,29 @@ class OrnsteinUhlenbeckLimit:
             )
         start = np.array(check_pair("mean", mean))
         object.__setattr__(self, "model", model)
+        object.__setattr__(self, "_temperature", phi.temperature)
         object.__setattr__(self, "mean_at_start", start)
         object.__setattr__(self, "covariance_at_start", checked_covariance(variance))
 
     @property
     def rates(self) -> Array:
         """(k1, k2) = (1/(A²σ1²), 1/(A²σ2²)), shape (2,)."""
-        return 1.0 / (self.model.noise**2 * self.stationary_variance)
+        return 1.0 / (self.model.noise**2 * self._squares)
 
     @property
     def stationary_mean(self) -> Array:
         """(A²v σ1², 0), shape (2,)."""
         pull = self.model.noise**2 * self.model.belt_speed
-        return np.array([pull * self.stationary_variance[0], 0.0])
+        return np.array([pull * self._squares[0], 0.0])
 
     @property
     def stationary_variance(self) -> Array:
-        """(σ1², σ2²), shape (2,); the components are independent."""
+        """(Fσ1², Fσ2²), shape (2,); the components are independent."""
+        return self._temperature * self._squares
+
+    @property
+    def _squares(self) -> Array:
+        """(σ1², σ2²), shape (2,)."""
         potential: Any = self.model.potential
         return np.array([potential.sigma1**2, potential.sigma2**2])
 
@@ -111,7 +119,7 @@ class OrnsteinUhlenbeckLimit:
         return np.asarray(np.exp(-exponent) / scale)
 
     def relative_entropy(self, s: ArrayLike) -> Array:
-        """H(𝒫|𝒫_S) = ½ Σ (λ − 1 − ln λ) + ½ Σ (E ξ_i − m_i)²/σ_i²; shape of s.
+        """H(𝒫|𝒫_S) = ½ Σ (λ − 1 − ln λ) + ½ Σ (E ξ_i − m_i)²/Fσ_i²; shape of s.
 
         λ are the eigenvalues of the covariance relative to the stationary one.
         """
@@ -148,7 +156,7 @@ class OrnsteinUhlenbeckLimit:
         return np.asarray(np.exp(-np.multiply.outer(_arclengths(s), self.rates)))
 
     def _gained(self, s: ArrayLike) -> Array:
-        """σ_i² (1 − e^{−2 k_i s}); shape (..., 2)."""
+        """Fσ_i² (1 − e^{−2 k_i s}); shape (..., 2)."""
         lost = -np.expm1(-2.0 * np.multiply.outer(_arclengths(s), self.rates))
         return np.asarray(self.stationary_variance * lost)
 

@@ -7,11 +7,12 @@ import math
 import numpy as np
 
 from fpsolve._support.arrays import Array, check_finite_numbers
-from fpsolve._support.checks import check_positive, shown
+from fpsolve._support.checks import check_non_negative, check_positive, shown
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.grids.plane import PlaneGrid
 from fpsolve.model.potentials.at_points import value_at
 from fpsolve.model.potentials.potential import Potential
+from fpsolve.reduced.hydrodynamic.persistence import Persistence
 
 __all__ = ["balanced_gradient", "reconstruct"]
 
@@ -27,17 +28,21 @@ def reconstruct(
     noise: float,
     *,
     order: int = 1,
+    relaxation_length: float = 0.0,
 ) -> Array:
-    """p ≈ 𝒫/2π + ε p₁, p₁ = −(1/π) τ(α)·(∇ + ∇B)𝒫, on the phase-space grid.
+    """p ≈ 𝒫/2π + ε p₁, p₁ = −(1/π) τ(α)·(F∇ + ∇B)𝒫, on the phase-space grid.
+
+    F = 1 for the basic model; for a smooth fibre see `Persistence`, and p is the
+    density of (ξ, α).
 
     Inserting p = 𝒫/2π + ε p₁ in (7) leaves at order one ½ ∂_αα p₁ =
     (1/2π) τ·(∇ + ∇B)𝒫, and τ'' = −τ: the factor is −1/π, where the paper, which drops
     1/2π, prints −2. p₁ carries the mean direction: ∫ τ p dα = −ε(∇ + ∇B)𝒫 is the
     diffusive flux, and E cos α = −v in the stationary state.
 
-    Exact: ∫ p dα = 𝒫 and the mass. The gradient is taken as e^{−B}∇(e^{B}𝒫), so p₁
-    vanishes to rounding where 𝒫 is a multiple of e^{−B}; of order 2 in the cell width
-    otherwise. Can fail: p < 0 where ε|(∇ + ∇B)𝒫| > 𝒫/2; nothing is clipped.
+    Exact: ∫ p dα = 𝒫 and the mass. The gradient is taken as F e^{−B/F}∇(e^{B/F}𝒫), so
+    p₁ vanishes to rounding where 𝒫 is a multiple of e^{−B/F}; of order 2 in the cell
+    width otherwise. Can fail: p < 0 where ε|(F∇ + ∇B)𝒫| > 𝒫/2; nothing is clipped.
 
     Parameters
     ----------
@@ -50,6 +55,8 @@ def reconstruct(
         A; ε = 1/A².
     order : {0, 1}
         0 leaves p₁ out.
+    relaxation_length : float
+        R of a smooth fibre.
 
     Returns
     -------
@@ -67,23 +74,25 @@ def reconstruct(
     p = np.repeat(density[:, :, None] / (2 * math.pi), grid.shape[2], axis=2)
     if order == 0:
         return p
-    slope1, slope2 = balanced_gradient(density, plane, potential)
+    length = check_non_negative("relaxation_length", relaxation_length)
+    factor = Persistence(noise, length).factor
+    slope1, slope2 = balanced_gradient(density, plane, potential, factor)
     cosine, sine = np.cos(grid.alpha), np.sin(grid.alpha)
     along = slope1[:, :, None] * cosine + slope2[:, :, None] * sine
     return np.asarray(p - epsilon / math.pi * along)
 
 
 def balanced_gradient(
-    density: Array, plane: PlaneGrid, potential: Potential
+    density: Array, plane: PlaneGrid, potential: Potential, factor: float = 1.0
 ) -> tuple[Array, Array]:
-    """(∇ + ∇B)𝒫 = e^{−B} ∇(e^{B}𝒫) by centred differences, two (n1, n2) arrays.
+    """(F∇ + ∇B)𝒫 = F e^{−B/F} ∇(e^{B/F}𝒫) by centred differences, two (n1, n2) arrays.
 
     At the walls differences are one-sided, of order 2 like the others.
     """
-    b = value_at(potential, *plane.mesh())
+    b = value_at(potential, *plane.mesh()) / factor
     return (
-        _derivative(density, b, plane.spacing[0], 0),
-        _derivative(density, b, plane.spacing[1], 1),
+        factor * _derivative(density, b, plane.spacing[0], 0),
+        factor * _derivative(density, b, plane.spacing[1], 1),
     )
 
 

@@ -1,4 +1,4 @@
-"""Paths of dξ = (−ε∇B + v e₁) ds + √(2ε) dW, the process of the limit equation."""
+"""Paths of dξ = (−ε∇B + v e₁) ds + √(2εF) dW, the process of the limit equation."""
 
 from __future__ import annotations
 
@@ -18,10 +18,11 @@ from fpsolve.evolution.saved import Saved
 from fpsolve.evolution.schedule import Schedule, make_schedule
 from fpsolve.evolution.schedule import checked_stops as checked_series
 from fpsolve.grids.plane import PlaneGrid
-from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.fibre import FibreModel
 from fpsolve.model.potentials.quadratic import QuadraticPotential
 from fpsolve.reduced.hydrodynamic.layout import PATHS
 from fpsolve.reduced.hydrodynamic.ornstein_uhlenbeck import OrnsteinUhlenbeckLimit
+from fpsolve.reduced.hydrodynamic.persistence import Persistence
 
 __all__ = ["METHODS", "HydrodynamicPaths", "sample"]
 
@@ -40,7 +41,7 @@ class HydrodynamicPaths(Saved):
     method : {"exact", "heun"}
     ds : float
         Step; for "exact" the longest distance between two saved points.
-    model : LayDownModel or None
+    model : FibreModel or None
         Of which they are; None if it could not be read back.
     call : Call or None
         How it was made.
@@ -55,7 +56,7 @@ class HydrodynamicPaths(Saved):
     xi: Array
     method: str
     ds: float
-    model: LayDownModel | None = None
+    model: FibreModel | None = None
     call: Call | None = None
     provenance: dict[str, Any] = field(default_factory=dict)
 
@@ -79,7 +80,7 @@ class HydrodynamicPaths(Saved):
 
 
 def sample(
-    model: LayDownModel,
+    model: FibreModel,
     n_paths: int,
     s_end: float,
     ds: float | None,
@@ -124,7 +125,7 @@ def check_room(n_paths: int, n_saved: int) -> None:
     check_memory(required, None, "sample fewer paths, save less often")
 
 
-def checked_method(model: LayDownModel, method: str | None) -> str:
+def checked_method(model: FibreModel, method: str | None) -> str:
     """The method, or the best one for the potential."""
     quadratic = isinstance(model.potential, QuadraticPotential)
     if method is None:
@@ -185,7 +186,7 @@ def checked_stops(s_end: float, save_at: Iterable[float] | None) -> Array:
 
 
 def _exact(
-    model: LayDownModel, xi: Array, stops: Array, rng: np.random.Generator
+    model: FibreModel, xi: Array, stops: Array, rng: np.random.Generator
 ) -> HydrodynamicPaths:
     """From one saved point to the next by the Gaussian transition law."""
     process = OrnsteinUhlenbeckLimit(model)
@@ -198,13 +199,14 @@ def _exact(
 
 
 def _heun(
-    model: LayDownModel, xi: Array, schedule: Schedule, rng: np.random.Generator
+    model: FibreModel, xi: Array, schedule: Schedule, rng: np.random.Generator
 ) -> HydrodynamicPaths:
     """ξ* = ξ + a(ξ) ds + b ΔW, ξ ← ξ + ½(a(ξ) + a(ξ*)) ds + b ΔW.
 
     Weakly of order 2, because the noise is additive.
     """
-    amplitude = math.sqrt(2.0 * schedule.ds) / model.noise
+    # √(2εF ds), εF half the persistence length.
+    amplitude = math.sqrt(Persistence.of(model).length * schedule.ds)
     drift = _Drift(model)
     saved = [xi] if 0 in schedule.saves else []
     saves = set(schedule.saves)
@@ -226,7 +228,7 @@ def _heun(
 class _Drift:
     """a(ξ) = −ε∇B(ξ) + v e₁."""
 
-    def __init__(self, model: LayDownModel) -> None:
+    def __init__(self, model: FibreModel) -> None:
         self.gradient = model.potential.gradient
         self.epsilon = 1.0 / model.noise**2
         self.belt = np.array([model.belt_speed, 0.0])
@@ -236,7 +238,7 @@ class _Drift:
         return np.asarray(self.belt - self.epsilon * slopes)
 
 
-def check_paths(model: LayDownModel, before: Array, after: Array, s: float) -> None:
+def check_paths(model: FibreModel, before: Array, after: Array, s: float) -> None:
     """Raise NonFinitePathError if a step led to infinity."""
     if math.isfinite(float(np.abs(after).max())):
         return
