@@ -5,6 +5,9 @@ from .agreement.check import CrossCheck as CrossCheck
 from .agreement.compare import compare as compare
 from .agreement.cross_check import cross_check as cross_check
 from .agreement.outcome import AgreementTest as AgreementTest
+from .constants.relaxation_slopes import Slope as Slope
+from .constants.relaxation_slopes import gap_slope as gap_slope
+from .constants.relaxation_slopes import variance_slope as variance_slope
 from .ergodicity.averages import ErgodicFit as ErgodicFit
 from .ergodicity.averages import ergodic_averages as ergodic_averages
 from .ergodicity.averages import fit_ergodic_error as fit_ergodic_error
