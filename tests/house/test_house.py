@@ -17,6 +17,7 @@ FLOORS = (
     ("grids",),
     ("evolution",),
     ("density", "paths", "spectral", "reduced"),
+    ("web",),
     ("studies", "interop"),
     ("results",),
     ("plotting",),

@@ -1,0 +1,1 @@
+"""Webs of many fibres: laid, measured and described."""

@@ -1,0 +1,111 @@
+"""Rectangles of a web that are nearly independent of each other."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from fpsolve._support.arrays import Array
+from fpsolve._support.checks import check_positive
+from fpsolve.web.statistics.correlation import correlation_lengths
+
+__all__ = ["FEWEST_BLOCKS", "Blocks", "choose_blocks", "cut"]
+
+# Of fewer, no standard error is worth its name: Student's t(2) already covers 95 % at
+# 4.3 standard errors only.
+FEWEST_BLOCKS = 4
+# Aimed at where the web allows them: the error is then known to 9 %, and longer blocks
+# are more independent.
+_BLOCKS = 64
+# Sides of a block in correlation lengths. Cells that are independent of each other are
+# blocks themselves: only what exceeds the cell counts.
+_CORRELATION_LENGTHS = 4.0
+
+
+@dataclass(frozen=True)
+class Blocks:
+    """n = n₂ n₁ rectangles of nearly equal size that hold every cell exactly once.
+
+    Parameters
+    ----------
+    cells : tuple of int
+        Cells in cross and machine direction.
+    counts : tuple of int
+        Blocks in cross and machine direction.
+    side : float
+        Side that was aimed at.
+    """
+
+    cells: tuple[int, int]
+    counts: tuple[int, int]
+    side: float
+
+    @property
+    def n_blocks(self) -> int:
+        """Number of blocks."""
+        return self.counts[0] * self.counts[1]
+
+    def sums(self, field: Array) -> Array:
+        """Σ over the cells of every block; axes behind the first two are kept."""
+        for axis in (0, 1):
+            n, count = self.cells[axis], self.counts[axis]
+            field = np.add.reduceat(field, np.arange(count) * n // count, axis=axis)
+        return field.reshape(self.n_blocks, *field.shape[2:])
+
+    @property
+    def sizes(self) -> Array:
+        """Number of cells of every block."""
+        return self.sums(np.ones(self.cells))
+
+    @property
+    def reason(self) -> str:
+        """Why they allow no standard error; empty if they do."""
+        if self.n_blocks >= FEWEST_BLOCKS:
+            return ""
+        return (
+            f"the web holds {self.n_blocks} independent blocks of side {self.side:.3g}, "
+            f"{FEWEST_BLOCKS} are needed; lay a larger web"
+        )
+
+
+def choose_blocks(
+    means: Array, cell: float, block: float | None, shortest: float = 0.0
+) -> Blocks:
+    """Return blocks of four correlation lengths ℓ, x + 4(ℓ - x), more where 64 fit.
+
+    Parameters
+    ----------
+    means : array
+        Means of the cells, cross × machine direction.
+    cell : float
+        Side of a cell.
+    block : float, optional
+        Side of a block instead.
+    shortest : float
+        What a block must hold, such as the longest wave that is measured.
+    """
+    cells, extents = means.shape, cell * np.array(means.shape)
+    if block is not None:
+        side = max(check_positive("block", block), cell)
+        return cut(cells, cell, (side, side))
+    balanced = math.sqrt(float(np.prod(extents)) / _BLOCKS)
+    longest = max(balanced, shortest, cell)
+    lengths = correlation_lengths(means, cell)
+    cross, machine = (
+        max(longest, cell + _CORRELATION_LENGTHS * (one - cell)) for one in lengths
+    )
+    return cut(cells, cell, (cross, machine))
+
+
+def cut(cells: Any, cell: float, sides: tuple[float, float]) -> Blocks:
+    """Return as many blocks of at least these sides as fit, one at the least."""
+    # Seven blocks of a tenth fit into 0.7, although 0.7/0.1 is a little less.
+    fitting = [
+        int(n * cell / side * (1.0 + 1e-9))
+        for n, side in zip(cells, sides, strict=True)
+    ]
+    counts = [max(1, min(n, count)) for n, count in zip(cells, fitting, strict=True)]
+    return Blocks((cells[0], cells[1]), (counts[0], counts[1]), max(sides))
