@@ -58,7 +58,7 @@ def web_of_sticks(generator, shape, stick, mean):
 
 
 def stick_variance(zone, stick, mean):
-    """CV² = 2/(m ℓ) ∫_0^ℓ (ℓ - r) K(r) dr, K the mean overlap of two squares over x⁴."""
+    """CV² = 2/(m ℓ) ∫ (ℓ - r) K(r) dr, K the mean overlap of two squares over x⁴."""
 
     def overlap(r):
         angle = np.linspace(0, np.pi / 2, 801)

@@ -20,6 +20,8 @@ FEWEST_BLOCKS = 4
 # Aimed at where the web allows them: the error is then known to 9 %, and longer blocks
 # are more independent.
 _BLOCKS = 64
+# Relative; what rounding makes of the number of blocks.
+_ROUNDING = 1e-9
 # Sides of a block in correlation lengths. Cells that are independent of each other are
 # blocks themselves: only what exceeds the cell counts.
 _CORRELATION_LENGTHS = 4.0
@@ -66,8 +68,8 @@ class Blocks:
         if self.n_blocks >= FEWEST_BLOCKS:
             return ""
         return (
-            f"the web holds {self.n_blocks} independent blocks of side {self.side:.3g}, "
-            f"{FEWEST_BLOCKS} are needed; lay a larger web"
+            f"the web holds {self.n_blocks} independent blocks of side "
+            f"{self.side:.3g}, {FEWEST_BLOCKS} are needed; lay a larger web"
         )
 
 
@@ -104,7 +106,7 @@ def cut(cells: Any, cell: float, sides: tuple[float, float]) -> Blocks:
     """Return as many blocks of at least these sides as fit, one at the least."""
     # Seven blocks of a tenth fit into 0.7, although 0.7/0.1 is a little less.
     fitting = [
-        int(n * cell / side * (1.0 + 1e-9))
+        int(n * cell / side * (1.0 + _ROUNDING))
         for n, side in zip(cells, sides, strict=True)
     ]
     counts = [max(1, min(n, count)) for n, count in zip(cells, fitting, strict=True)]

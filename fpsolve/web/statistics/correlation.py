@@ -53,4 +53,4 @@ def _autocovariance(random: Array) -> Array:
     n = random.shape[0]
     waves = np.fft.rfft(random, 2 * n, axis=0)
     products = np.fft.irfft(np.sum(np.abs(waves) ** 2, axis=1), 2 * n)[:n]
-    return products / (random.shape[1] * np.arange(n, 0, -1))
+    return np.asarray(products / (random.shape[1] * np.arange(n, 0, -1)))

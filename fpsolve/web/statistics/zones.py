@@ -142,7 +142,7 @@ def _root(square: Estimate) -> Estimate:
     """Return the root of a square; where that is lost in its error, the error's."""
     root, error = float(np.sqrt(square)), square.standard_error
     # Of equal zones both are zero; where the error is not known, it stays NaN.
-    if not error == 0.0:
+    if error != 0.0:
         error /= np.maximum(2.0 * root, np.sqrt(error))
     return Estimate(root, error, square.n_blocks, square.n_samples, square.reason)
 
@@ -157,7 +157,7 @@ def _strip_means(density: Array, ratio: float) -> Array:
     sums = np.zeros((n + 1, density.shape[1]))
     np.cumsum(density, axis=0, out=sums[1:])
     at_edges = sums[below] + (edges - below)[:, None] * density[below]
-    return np.diff(at_edges, axis=0) / ratio
+    return np.asarray(np.diff(at_edges, axis=0) / ratio)
 
 
 def _count(n: int, ratio: float) -> int:
