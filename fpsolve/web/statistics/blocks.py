@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from fpsolve._support.arrays import Array
 from fpsolve._support.checks import check_positive
@@ -56,6 +57,15 @@ class Blocks:
             n, count = self.cells[axis], self.counts[axis]
             field = np.add.reduceat(field, np.arange(count) * n // count, axis=axis)
         return field.reshape(self.n_blocks, *field.shape[2:])
+
+    @property
+    def labels(self) -> NDArray[np.int64]:
+        """Number of the block of every cell, cross × machine direction."""
+        bands = [
+            np.searchsorted(np.arange(1, count) * n // count, np.arange(n), "right")
+            for n, count in zip(self.cells, self.counts, strict=True)
+        ]
+        return bands[0][:, None] * self.counts[1] + bands[1]
 
     @property
     def sizes(self) -> Array:

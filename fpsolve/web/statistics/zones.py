@@ -8,7 +8,7 @@ import numpy as np
 
 from fpsolve._support.arrays import Array, check_finite_numbers
 from fpsolve._support.checks import check_positive
-from fpsolve.web.statistics.blocks import choose_blocks
+from fpsolve.web.statistics.blocks import Blocks, choose_blocks
 from fpsolve.web.statistics.estimate import Estimate, Estimates
 from fpsolve.web.statistics.fields import check_density
 from fpsolve.web.statistics.jackknife import estimate
@@ -17,6 +17,7 @@ __all__ = [
     "check_zone",
     "coefficient_of_variation",
     "mean_density",
+    "measured_zones",
     "relative_variance",
     "zone_means",
 ]
@@ -64,16 +65,15 @@ def coefficient_of_variation(
         For NaN, negative or no mass, a zone below the pixel or larger than the web, or
         fewer than two zones.
     """
-    density, pixel = check_density(length_density, pixel)
     if np.ndim(zone) == 0:
-        return _variation(density, pixel, zone, block)
+        return _variation(length_density, pixel, zone, block)
     zones = check_finite_numbers("zone", zone)
     if zones.ndim != 1 or zones.size == 0:
         raise ValueError(
             f"`zone` must be a number or a list of them, got shape {zones.shape}."
         )
     return Estimates.of(
-        zones, [_variation(density, pixel, one, block) for one in zones]
+        zones, [_variation(length_density, pixel, one, block) for one in zones]
     )
 
 
@@ -101,9 +101,21 @@ def zone_means(density: Array, pixel: float, zone: float) -> Array:
     return _strip_means(_strip_means(density, zone / pixel).T, zone / pixel).T
 
 
+def measured_zones(
+    length_density: Any, pixel: Any, zone: Any, block: float | None
+) -> tuple[float, list[Array], Blocks]:
+    """Return the side of the zones, what `relative_variance` asks of them, blocks."""
+    density, pixel = check_density(length_density, pixel)
+    side = check_zone(zone, pixel, density.shape)
+    means = zone_means(density, pixel, side)
+    shift = float(means.mean())
+    centred = means - shift
+    fields = [centred, centred**2, np.full(means.shape, shift)]
+    return side, fields, choose_blocks(means, side, block)
+
+
 def relative_variance(means: Array) -> Array:
-    """⟨m²⟩/⟨m⟩² - 1 of the two means on the last axis, never negative."""
-    # Shifted by the caller, so that squares do not cancel.
+    """CV² from ⟨m - c⟩, ⟨(m - c)²⟩ and c on the last axis; c keeps the digits."""
     mean, square, shift = means[..., 0], means[..., 1], means[..., 2]
     return np.asarray(np.maximum(square - mean**2, 0.0) / (mean + shift) ** 2)
 
@@ -127,14 +139,9 @@ def check_zone(zone: Any, pixel: float, shape: tuple[int, int]) -> float:
 
 
 def _variation(
-    density: Array, pixel: float, zone: Any, block: float | None
+    length_density: Any, pixel: float, zone: Any, block: float | None
 ) -> Estimate:
-    side = check_zone(zone, pixel, density.shape)
-    means = zone_means(density, pixel, side)
-    blocks = choose_blocks(means, side, block)
-    shift = float(means.mean())
-    centred = means - shift
-    fields = [centred, centred**2, np.full(means.shape, shift)]
+    _, fields, blocks = measured_zones(length_density, pixel, zone, block)
     return _root(estimate(relative_variance, fields, blocks))
 
 
