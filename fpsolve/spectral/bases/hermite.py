@@ -111,7 +111,7 @@ class _States(States):
     """
 
     def __init__(self, sector: Sector, truncation: Truncation) -> None:
-        self.degree, self.last = truncation
+        self.degree, self.last = truncation[:2]
         self.folded = sector.parity is not None
         self.k_range = harmonics_of(sector, self.last)
         self.first = int(self.k_range[0])

@@ -82,7 +82,7 @@ class RadialDiscretisation(Discretisation):
 
     def enlarged(self, truncation: Truncation) -> Truncation:
         """One more harmonic, and the degree that B' adds."""
-        degree, harmonics = truncation
+        degree, harmonics = truncation[:2]
         step = 1 + degree // 4
         if isinstance(self.potential, PowerPotential) and self._basis(degree).smooth:
             step = int(self.potential.exponent) - 1
@@ -93,9 +93,10 @@ class RadialDiscretisation(Discretisation):
         k, counts = self._layout(sector, truncation)
         return np.repeat(k, counts)
 
-    def matrix(self, sector: Sector, degree: int, harmonics: int) -> csc_array:
+    def matrix(self, sector: Sector, *sizes: int) -> csc_array:
         """The real matrix of L on a sector (columns: images)."""
-        k, counts = self._layout(sector, Truncation(degree, harmonics))
+        truncation = Truncation(*sizes)
+        degree, (k, counts) = truncation.degree, self._layout(sector, truncation)
         offsets = np.cumsum(counts) - counts
         size = int(counts.sum())
         diagonal = np.arange(size)
@@ -179,7 +180,7 @@ class RadialDiscretisation(Discretisation):
         self, sector: Sector, truncation: Truncation
     ) -> tuple[Integers, Integers]:
         """Harmonics, and how many radial functions each has."""
-        degree, harmonics = truncation
+        degree, harmonics = truncation[:2]
         k = harmonics_of(sector, harmonics)
         basis, M = self._basis(degree), index_of(sector)
         counts = [basis.count(n, M - n, degree) for n in map(int, k)]

@@ -1,7 +1,8 @@
 """Invariant subspaces of the generator, and what a Galerkin basis in them offers.
 
 A discretisation is an orthonormal basis of L²(μ), μ = exp(-B) dξ dα / (2π Z), of
-functions of ξ times harmonics of α. The generator of (9),
+functions of ξ times harmonics of α (for smooth fibres two dual ones, see
+`BodyFrameDiscretisation`). The generator of (9),
 
     L f = (τ + v e₁)·∇f - ∇B·τ⊥ ∂_α f + (A²/2) ∂_αα f,
 
@@ -20,7 +21,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fpsolve._support.arrays import Complex
-from fpsolve.grids.phase_space import PhaseSpaceGrid
 
 __all__ = ["Discretisation", "Sector", "Truncation"]
 
@@ -78,10 +78,14 @@ class Sector:
 
 
 class Truncation(NamedTuple):
-    """Size of a basis: |k| <= harmonics in α, and `degree` in ξ."""
+    """Size of a basis: `degree` in ξ, |k| <= harmonics in α and a degree in κ.
+
+    In the frame of the fibre the harmonics of α are those of ξ, no more than `degree`.
+    """
 
     degree: int
     harmonics: int
+    curvature: int = 0
 
 
 class Discretisation(ABC):
@@ -89,6 +93,11 @@ class Discretisation(ABC):
 
     noise: float
     belt_speed: float = 0.0
+
+    @property
+    def reversible(self) -> bool:
+        """Whether turning α by π takes L to L*: of basic fibres on a fixed belt."""
+        return not self.belt_speed
 
     @abstractmethod
     def sectors(self) -> Iterator[Sector]:
@@ -110,8 +119,8 @@ class Discretisation(ABC):
         """The harmonic k of every basis function: dL/dA is -A k² on the diagonal."""
 
     @abstractmethod
-    def matrix(self, sector: Sector, degree: int, harmonics: int) -> Any:
-        """The real matrix of L (columns: images) as a CSC array."""
+    def matrix(self, sector: Sector, *sizes: int) -> Any:
+        """The real matrix of L (columns: images) of a truncation, as a CSC array."""
 
     @abstractmethod
     def embed(
@@ -125,9 +134,9 @@ class Discretisation(ABC):
         vector: Vector,
         sector: Sector,
         truncation: Truncation,
-        grid: PhaseSpaceGrid,
+        grid: Any,
     ) -> Complex:
-        """f(ξ, α) on the grid, shape `grid.shape`, from its coefficients."""
+        """f on a grid of the phase space, shape `grid.shape`, from its coefficients."""
 
     def on_edge(self, vector: Vector, sector: Sector, truncation: Truncation) -> bool:
         """Whether an eigenvector belongs to the truncation and not to L."""

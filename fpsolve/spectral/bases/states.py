@@ -95,9 +95,9 @@ class PolynomialDiscretisation(Discretisation, Generic[AnyStates]):
         """The harmonic k of every basis function."""
         return self.states(sector, truncation).k
 
-    def matrix(self, sector: Sector, degree: int, harmonics: int) -> csc_array:
+    def matrix(self, sector: Sector, *sizes: int) -> csc_array:
         """The real matrix of L on a sector (columns: images)."""
-        states = self.states(sector, Truncation(degree, harmonics))
+        states = self.states(sector, Truncation(*sizes))
         decay = -0.5 * self.noise**2 * states.k.astype(float) ** 2
         parts = [states.coupling(*move) for move in self.moves(states)]
         return assembled([(states.all, states.all, decay), *parts], len(states.k))

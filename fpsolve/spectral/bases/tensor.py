@@ -102,7 +102,7 @@ class TensorDiscretisation(PolynomialDiscretisation["TensorStates"]):
     ) -> Complex:
         """f(ξ, α) on the grid from its coefficients."""
         states = TensorStates(sector, truncation)
-        degree, harmonics = truncation
+        degree, harmonics = truncation[:2]
         hermite1 = hermite_polynomials(degree, grid.xi1 / self.sigma1)
         hermite2 = hermite_polynomials(degree, grid.xi2 / self.sigma2)
         weight = np.where(np.arange(harmonics + 1) == 0, 1.0, np.sqrt(2.0))[:, None]
@@ -139,7 +139,7 @@ class TensorStates(States):
     def __init__(self, sector: Sector, truncation: Truncation) -> None:
         if sector.M is not None or sector.parity is None:
             raise ValueError(f"`sector` must have a parity and no M, got {sector!r}.")
-        self.degree, self.last = truncation
+        self.degree, self.last = truncation[:2]
         shape = (self.last + 1, self.degree + 1, self.degree + 1)
         k, m, n = np.ogrid[: shape[0], : shape[1], : shape[2]]
         cosine = (-1) ** n == sector.parity

@@ -101,8 +101,8 @@ def condition(
 ) -> float:
     """1/|⟨l, r⟩|, unit left and right eigenvectors: how far rounding is magnified.
 
-    On a fixed belt turning α by π takes L to L*, so that the left eigenvector is the
-    right one with the odd harmonics reversed.
+    Of a basic fibre on a fixed belt turning α by π takes L to L*, so that the left
+    eigenvector is the right one with the odd harmonics reversed.
     """
     left = left_vector(discretisation, mode, work)
     return 1 / max(abs(complex(left @ mode.vector)), TINY)
@@ -112,7 +112,7 @@ def left_vector(
     discretisation: Discretisation, mode: Mode, work: Work | None = None
 ) -> Complex:
     """Unit coefficients of the eigenfunction of L*, whose matrix is the transpose."""
-    if not discretisation.belt_speed:
+    if discretisation.reversible:
         k = discretisation.harmonics(mode.sector, mode.truncation)
         reversed_: Complex = np.where(k % 2 == 0, 1.0, -1.0) * mode.vector
         return reversed_

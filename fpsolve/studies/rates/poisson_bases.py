@@ -152,7 +152,7 @@ class _TensorBasis(Basis):
 
     def tables(self, f: Observable, truncation: Truncation) -> tuple[Array, Array]:
         """⟨f, he_m he_n √2 cos kα⟩ and with sin, indexed [m, n, k]."""
-        degree, harmonics = truncation
+        degree, harmonics = truncation[:2]
         places, weights = hermegauss(min(2 * degree, 180))
         weights = weights / weights.sum()
         table = hermite_polynomials(degree, places) * weights
