@@ -30,3 +30,9 @@ from .small_noise import plot_small_noise_spectrum as plot_small_noise_spectrum
 from .spectrum import plot_spectrum as plot_spectrum
 from .stationary import plot_steady_state as plot_steady_state
 from .trajectories import plot_trajectories as plot_trajectories
+from .web_png import save_web_png as save_web_png
+from .web_quality import plot_rose as plot_rose
+from .web_quality import plot_variation as plot_variation
+from .web_spectrum import plot_web_spectrum as plot_web_spectrum
+from .webs import plot_mass as plot_mass
+from .webs import plot_web as plot_web
