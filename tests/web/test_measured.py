@@ -25,7 +25,7 @@ def test_the_methods_of_a_web_are_the_functions_of_its_density():
     density, pixel, tensor = web.length_density, web.pixel, web.orientation
     block = 4.0
     pairs = [
-        (web.mean_density(), mean_density(density, pixel)),
+        (web.mean_length_density(), mean_density(density, pixel)),
         (web.coefficient_of_variation(2.0, block=block),
          coefficient_of_variation(density, pixel, 2.0, block=block)),
         (web.formation_number(1.0), formation_number(density, pixel, 1.0)),

@@ -31,7 +31,7 @@ class Measured:
     pixel: float
     orientation: Any
 
-    def mean_density(self, *, block: float | None = None) -> Estimate:
+    def mean_length_density(self, *, block: float | None = None) -> Estimate:
         """⟨m⟩, mean laid length per area; 1/(v d) is expected.
 
         Parameters
