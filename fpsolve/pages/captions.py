@@ -101,6 +101,10 @@ CAPTIONS = {
         "Distances against the small parameter; thin lines: the slope that is derived.",
         "Distances to the limit against the small parameter, logarithmic",
     ),
+    "white-noise/distances": (
+        "Distances against R; thin lines: the slope that is derived.",
+        "Distances to the limit against the relaxation length, logarithmic",
+    ),
     "small-noise/distances": (
         "Distances against the small parameter; thin lines: the slope that is derived.",
         "Distances to the limit against the small parameter, logarithmic",

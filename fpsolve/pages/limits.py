@@ -27,6 +27,7 @@ __all__ = [
     "small_rows",
     "small_section",
     "spectrum_section",
+    "table_of",
 ]
 
 _LARGE_NOTE = (
@@ -59,7 +60,7 @@ def large_section(dataset: xr.Dataset, source: str) -> Section:
         {**row, "quantity": meaning}
         for row, meaning in zip(large_rows(dataset), meanings, strict=True)
     ]
-    table = _table(
+    table = table_of(
         "Distance of the full equation from its limit at the same slow length.",
         rows, _LARGE_NOTE, words=frozenset({0}),
     )  # fmt: skip
@@ -86,7 +87,7 @@ def small_section(dataset: xr.Dataset, source: str) -> Section:
         ("belt speeds v/A²", listed(dataset["belt_speed_scale"])),
         ("settings", assigned(about["options"], ".4g")),
     ]  # fmt: skip
-    table = _table(
+    table = table_of(
         "Distance of the law of the energy G from that of the averaged equation (16).",
         small_rows(dataset), _SMALL_NOTE,
     )  # fmt: skip
@@ -108,7 +109,7 @@ def spectrum_section(dataset: xr.Dataset, source: str) -> Section:
         ("noises", listed(dataset["noise"])),
         ("tolerance", f"{about['tolerance']:g}"),
     ]
-    table = _table(
+    table = table_of(
         "Slowest real rate of the sector M = 0 over A², even and odd under reflection.",
         _rate_rows(dataset),
         "Limit: the rate of |G| (even) and of signed G (odd) in the energy process. A "
@@ -140,7 +141,9 @@ def _rate_rows(dataset: xr.Dataset) -> list[dict[str, str]]:
     return rows
 
 
-def large_rows(dataset: xr.Dataset) -> list[dict[str, str]]:
+def large_rows(
+    dataset: xr.Dataset, over: str = "noise", symbol: str = "A"
+) -> list[dict[str, str]]:
     """One row for every quantity: distances by noise, order derived and fitted."""
     rows, last = [], ""
     for quantity in dataset["quantity"].to_numpy():
@@ -148,11 +151,11 @@ def large_rows(dataset: xr.Dataset) -> list[dict[str, str]]:
         part, measure = str(quantity).split("/")
         row = {"quantity": f"{part}:\n  {measure}" if part != last else f"  {measure}"}
         last = part
-        names = ("noise", "distance", "distance_error")
+        names = (over, "distance", "distance_error")
         columns = (one[name].to_numpy() for name in names)
         for noise, distance, error in zip(*columns, strict=True):
             mark = "*" if distance < 3 * error else ""
-            row[f"A = {noise:g}"] = _number(distance) + mark
+            row[f"{symbol} = {noise:g}"] = _number(distance) + mark
         row["derived"] = _number(float(one["expected_order"]))
         row["fitted"] = _number(float(one["fitted_order"]))
         rows.append(row)
@@ -181,12 +184,13 @@ def _number(value: float) -> str:
     return f"{value:.2g}" if math.isfinite(value) else "-"
 
 
-def _table(
+def table_of(
     caption: str,
     rows: list[dict[str, str]],
     note: str,
     words: frozenset[int] = frozenset(),
 ) -> Table:
+    """The table of rows that share their keys, which are the headings."""
     headings = list(rows[0]) if rows else []
     return Table(caption, headings, [list(row.values()) for row in rows], note, words)
 

@@ -15,6 +15,7 @@ from .fibres import plot_nozzles as plot_nozzles
 from .files import save_figures as save_figures
 from .hydrodynamic import plot_hydrodynamic as plot_hydrodynamic
 from .limits import plot_large_noise as plot_large_noise
+from .limits import plot_white_noise as plot_white_noise
 from .marginals import plot_marginals as plot_marginals
 from .moments import plot_moments as plot_moments
 from .movie import movie as movie

@@ -21,7 +21,7 @@ from fpsolve.plotting.entropy import has_entropy, plot_entropy
 from fpsolve.plotting.ergodicity import plot_ergodic_averages
 from fpsolve.plotting.fibres import plot_fibre
 from fpsolve.plotting.hydrodynamic import plot_hydrodynamic
-from fpsolve.plotting.limits import plot_large_noise
+from fpsolve.plotting.limits import plot_large_noise, plot_white_noise
 from fpsolve.plotting.marginals import plot_marginals
 from fpsolve.plotting.moments import plot_moments
 from fpsolve.plotting.overview import plot_overview
@@ -147,6 +147,7 @@ FIGURES: dict[str, Callable[[Any], Figures]] = {
         averages=(plot_asymptotic_variance, known("asymptotic_variance")),
     ),
     "large-noise": each(distances=(plot_large_noise, known("distance"))),
+    "white-noise": each(distances=(plot_white_noise, known("distance"))),
     "small-noise": each(distances=(plot_small_noise, known("distance"))),
     "small-noise-spectrum": each(spectrum=(plot_small_noise_spectrum, always)),
     "energy-tables": of_energy_tables,

@@ -1,4 +1,4 @@
-"""Distances to the limit of large noise, with the slopes of the orders derived."""
+"""Distances to limits, with the slopes of the orders derived."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-__all__ = ["plot_large_noise"]
+__all__ = ["plot_large_noise", "plot_white_noise"]
 
 _PANELS = {
     "stationary": r"stationary, $v = w\varepsilon$",
@@ -44,6 +44,17 @@ _RATES = {
     "fixed_speed/mean_balance": ("to the von Mises balance", "orange", "D"),
 }
 _COLUMNS = 3
+_WHITE = {
+    "density/joint": (r"$p$ of $(\xi, \alpha)$", "vermilion", "s"),
+    "density/marginal": (r"$p$ of $\xi$", "blue", "o"),
+    "density/angle": (r"$p$ of $\alpha$", "orange", "D"),
+    "density/mean": (r"$\mathrm{E}\,\xi$", "sky", "^"),
+    "density/direction": (r"$\mathrm{E}\,\tau$", "green", "X"),
+    "paths/angle": (r"$\alpha$, same noise", "vermilion", "v"),
+    "paths/position": (r"$\xi$, same noise", "blue", "P"),
+    "paths/corrected": (r"$\alpha + R\kappa$, same noise", "orange", "*"),
+}
+_WHITE_PANELS = {"density": "densities and moments", "paths": "paths"}
 
 
 def plot_large_noise(dataset: xr.Dataset) -> Figure:
@@ -83,6 +94,46 @@ def plot_large_noise(dataset: xr.Dataset) -> Figure:
     return figure
 
 
+def plot_white_noise(dataset: xr.Dataset) -> Figure:
+    """Distance of smooth fibres from their white-noise limit against R, log-log.
+
+    Markers and lines as in `plot_large_noise`.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        From `white_noise_limit`.
+    """
+    check_dataset("dataset", dataset)
+    over = "relaxation_length"
+    if "expected_order" not in dataset or over not in dataset.coords:
+        raise ValueError(
+            "`dataset` must come from `white_noise_limit`, got one without "
+            f'"expected_order" over "{over}".'
+        )
+    known = set(dataset["quantity"].to_numpy())
+    panels = {
+        part: {name: _WHITE[name] for name in _WHITE if name in known & _of(part)}
+        for part in _WHITE_PANELS
+    }
+    panels = {part: lines for part, lines in panels.items() if lines}
+    title = f"$B$ = {dataset.attrs['formula']}"
+    with drawing(PAGE, 3.4, title) as figure:
+        grid = figure.subplots(1, len(panels), squeeze=False)
+        for axes, (part, lines) in zip(grid.flat, panels.items(), strict=True):
+            _draw(axes, dataset, lines, over)
+            axes.set_title(_WHITE_PANELS[part])
+            axes.set_xlabel("$R$")
+        grid[0, 0].set_ylabel("distance")
+        _legend(figure, grid)
+    return figure
+
+
+def _of(part: str) -> set[str]:
+    """The quantities of a part that are drawn."""
+    return {name for name in _WHITE if name.startswith(f"{part}/")}
+
+
 def _panels(dataset: xr.Dataset) -> dict[str, dict[str, tuple[str, str, str]]]:
     """Which quantities go where, for the parts that there are."""
     known = set(dataset["quantity"].to_numpy())
@@ -100,9 +151,12 @@ def _panels(dataset: xr.Dataset) -> dict[str, dict[str, tuple[str, str, str]]]:
 
 
 def _draw(
-    axes: Axes, dataset: xr.Dataset, lines: dict[str, tuple[str, str, str]]
+    axes: Axes,
+    dataset: xr.Dataset,
+    lines: dict[str, tuple[str, str, str]],
+    over: str = "epsilon",
 ) -> None:
-    epsilon = dataset["epsilon"].to_numpy()
+    epsilon = dataset[over].to_numpy()
     for name, (label, colour, marker) in lines.items():
         one = dataset.sel(quantity=name)
         distance = one["distance"].to_numpy()

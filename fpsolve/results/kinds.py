@@ -114,6 +114,14 @@ KINDS = {
         attributes=(*_POTENTIAL, "p0", "slow_length", "belt_speed_scale",
                     "fixed_speed", "quick"),
     ),
+    "white-noise": Kind(
+        "distances of smooth fibres to their white-noise limit",
+        "fpsolve.studies.limits.white_noise:white_noise_limit", counts="cases",
+        variables=("relaxation_length", *_CASES[1:], "quantity", "meaning", "distance",
+                   "distance_error", "expected_order", "fitted_order"),
+        attributes=(*_POTENTIAL, "noise", "p0", "s_end", "belt_speed", "n_paths",
+                    "quick"),
+    ),
     "small-noise": Kind(
         "distances to the limit of small noise",
         "fpsolve.studies.limits.small_noise:small_noise_limit", counts="cases",

@@ -17,6 +17,7 @@ from .limits.orders import FittedOrder as FittedOrder
 from .limits.orders import fitted_order as fitted_order
 from .limits.orders import observed_orders as observed_orders
 from .limits.small_noise import small_noise_limit as small_noise_limit
+from .limits.white_noise import white_noise_limit as white_noise_limit
 from .rates.poisson import asymptotic_variances as asymptotic_variances
 from .rates.rate_versus_noise import rate_versus_noise as rate_versus_noise
 from .sweeps.sweep import Case as Case

@@ -117,6 +117,10 @@ MAKERS = {
     "large-noise": lambda: studies.large_noise_limit(
         QUADRATIC, [1.4], quick=True, parts=["gap"], workers=0
     ),
+    "white-noise": lambda: studies.white_noise_limit(
+        QUADRATIC, 1.5, [0.1, 0.2], s_end=0.5, n_paths=50, quick=True, workers=0,
+        parts=["paths"],
+    ),
     "small-noise": lambda: studies.small_noise_limit(
         QUADRATIC, [0.8], belt_speed_scales=[0.0], slow_length=0.25, n_paths=50,
         quick=True,

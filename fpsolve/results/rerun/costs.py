@@ -151,6 +151,12 @@ def _of_large_noise(dataset: xr.Dataset, about: Mapping[str, Any]) -> Held:
         yield name, about.get(name)
 
 
+def _of_white_noise(dataset: xr.Dataset, about: Mapping[str, Any]) -> Held:
+    yield "relaxation_lengths", _values(dataset, "relaxation_length")
+    for name in ("noise", "s_end", "belt_speed", "n_paths"):
+        yield name, about.get(name)
+
+
 def _of_small_noise(dataset: xr.Dataset, about: Mapping[str, Any]) -> Held:
     yield "noises", _values(dataset, "noise")
     yield "belt_speed_scales", _values(dataset, "belt_speed_scale")
@@ -194,6 +200,7 @@ _STEPPING = ("solve", "sample_paths", "HydrodynamicLimit.solve", "EnergyProcess.
 _HELD: dict[str, Callable[[Any, Mapping[str, Any]], Held]] = {
     "rate_versus_noise": _of_rates,
     "large_noise_limit": _of_large_noise,
+    "white_noise_limit": _of_white_noise,
     "small_noise_limit": _of_small_noise,
     "small_noise_spectrum": _of_small_noise_spectrum,
     "ergodic_averages": _of_averages,

@@ -36,6 +36,11 @@ _ROUNDING = 1e-13
 class Slope(float):
     """A derivative at R = 0, a float with its error.
 
+    Parameters
+    ----------
+    value : float
+        The derivative.
+
     Attributes
     ----------
     error : float
@@ -203,7 +208,8 @@ def _turning(basis: HermiteDiscretisation, states: States) -> csc_array:
         (-1, 1, 0, scale * np.sqrt(m + 1)), (-1, 0, -1, scale * np.sqrt(n)),
         (1, 0, 1, -scale * np.sqrt(n + 1)), (1, -1, 0, -scale * np.sqrt(m)),
     )  # fmt: skip
-    diagonal = states.all, states.all, 0.5 * basis.noise**2 * states.k
+    turning = 0.5 * basis.noise**2 * states.k.astype(np.float64)
+    diagonal = states.all, states.all, turning
     return assembled([diagonal, *(states.coupling(*one) for one in parts)], len(m))
 
 

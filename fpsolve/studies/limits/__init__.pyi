@@ -6,3 +6,4 @@ from .orders import FittedOrder as FittedOrder
 from .orders import fitted_order as fitted_order
 from .orders import observed_orders as observed_orders
 from .small_noise import small_noise_limit as small_noise_limit
+from .white_noise import white_noise_limit as white_noise_limit

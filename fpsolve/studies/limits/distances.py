@@ -12,7 +12,7 @@ from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.model.laydown import LayDownModel
 from fpsolve.studies.limits.plane_limit import Approximation
 
-__all__ = ["distances"]
+__all__ = ["distances", "second_moment"]
 
 # Angles of a norm for every angle of the grid.
 _FINER = 4
@@ -54,7 +54,7 @@ def distances(
         "joint": _l1_norm(p - uniform, grid),
         "joint_p1": _l1_norm(p - corrected, grid),
         "mean": _apart(full, reduced, "mean_xi1", "mean_xi2"),
-        "second_moment": abs(_second_moment(full) - _second_moment(reduced)),
+        "second_moment": abs(second_moment(full) - second_moment(reduced)),
         "entropy": abs(entropies[0] - entropies[1]),
         "direction": math.hypot(full["mean_cos_alpha"], full["mean_sin_alpha"]),
         "direction_p1": _apart(full, reduced, "mean_cos_alpha", "mean_sin_alpha"),
@@ -73,7 +73,7 @@ def _apart(one: dict[str, float], other: dict[str, float], *names: str) -> float
     return math.hypot(*(one[name] - other[name] for name in names))
 
 
-def _second_moment(moments: dict[str, float]) -> float:
+def second_moment(moments: dict[str, float]) -> float:
     """E‖ξ‖²."""
     spread = moments["variance_xi1"] + moments["variance_xi2"]
     return spread + moments["mean_xi1"] ** 2 + moments["mean_xi2"] ** 2

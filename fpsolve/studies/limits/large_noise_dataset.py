@@ -26,7 +26,7 @@ from fpsolve.studies.sweeps.sweep import Case
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["large_noise_dataset"]
+__all__ = ["distance_variables", "large_noise_dataset"]
 
 
 def large_noise_dataset(
@@ -40,7 +40,7 @@ def large_noise_dataset(
     placed = by_noise_and_part(cases, noises, parts)
     listed = quantities_of(parts, quadratic=isinstance(potential, QuadraticPotential))
     columns = dict(zip(parts, placed.T, strict=True))
-    variables = _distances(columns, listed, noises**-2.0)
+    variables = distance_variables(columns, listed, noises**-2.0)
     coordinates = {
         "noise": ("noise", noises, labels("noise A")),
         "epsilon": ("noise", noises**-2.0, labels("ε = 1/A²")),
@@ -53,10 +53,13 @@ def large_noise_dataset(
     return study_dataset("large-noise", title, potential, variables, coordinates, about)
 
 
-def _distances(
-    columns: Mapping[str, NDArray[Any]], listed: Sequence[Quantity], epsilon: Array
+def distance_variables(
+    columns: Mapping[str, NDArray[Any]],
+    listed: Sequence[Quantity],
+    epsilon: Array,
+    over: str = "noise",
 ) -> dict[str, Any]:
-    """Distances, their errors and orders."""
+    """Distances, their errors, and orders in a small parameter over a dimension."""
     distance, error = (
         np.stack(
             [numbers_of(columns[one.part], one.measure + end) for one in listed], 1
@@ -68,13 +71,14 @@ def _distances(
         fitted_order(epsilon, one, floor)
         for one, floor in zip(distance.T, error.T, strict=True)
     ]
-    both, each = ("noise", "quantity"), "quantity"
+    last = over.replace("_", " ")
+    both, each = (over, "quantity"), "quantity"
     expected = np.array([one.order for one in listed])
     fitted = np.array([(one.order, one.standard_error) for one in fits]).T
     return {
         "distance": (both, distance, labels("distance to the limit")),
         "distance_error": (both, error, labels("numerical error of the distance")),
-        "observed_order": (both, observed, labels("order since the last noise")),
+        "observed_order": (both, observed, labels(f"order since the last {last}")),
         "expected_order": (each, expected, labels("order that is derived")),
         "fitted_order": (each, fitted[0], labels("fitted order")),
         "fitted_order_error": (

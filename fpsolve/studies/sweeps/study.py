@@ -56,10 +56,13 @@ def swept(
 
 
 def by_noise_and_part(
-    cases: Sequence[Case], noises: Array, parts: Sequence[str]
+    cases: Sequence[Case], noises: Array, parts: Sequence[str], name: str = "noise"
 ) -> NDArray[Any]:
-    """The cases as an array over (noise, part), None where a part was not asked for."""
-    places = [(case.arguments["noise"], case.arguments["part"]) for case in cases]
+    """The cases as an array over (noise, part), None where a part was not asked for.
+
+    Another number than the noise has another name.
+    """
+    places = [(case.arguments[name], case.arguments["part"]) for case in cases]
     known = dict(zip(places, cases, strict=True))
     rows = [[known.get((float(noise), part)) for part in parts] for noise in noises]
     return np.array(rows, dtype=object).reshape(len(noises), len(parts))

@@ -1,0 +1,157 @@
+"""The cases of the white-noise study: what one process computes for one R."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from fpsolve._support.arrays import Array
+from fpsolve.density.schemes import drift_kick
+from fpsolve.density.smooth.smooth_drift_kick import SmoothDriftKick
+from fpsolve.density.solve import solve
+from fpsolve.grids import diagnostics, initial
+from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.grids.smooth import SmoothPhaseSpaceGrid
+from fpsolve.model.curves.belts import FixedBelt, MovingBelt
+from fpsolve.model.potentials.nodes import gibbs_nodes
+from fpsolve.model.potentials.potential import Potential
+from fpsolve.model.smooth import SmoothLayDownModel
+from fpsolve.paths.laws import GaussianLaw
+from fpsolve.studies.limits.coupled_paths import coupled_distances
+from fpsolve.studies.limits.distances import second_moment
+
+__all__ = ["PARTS", "WhiteNoiseResolution", "white_noise_case"]
+
+# Half width of the curvature in its deviations, and cells in κ over √(A²/2R).
+_DEVIATIONS, _CELL = 5.5, 0.65
+# The comparison has fewer cells by a sixth and steps longer by a half.
+_FEWER, _LONGER = 5 / 6, 1.5
+# Steps for every relaxation length of the coupled paths, and of their comparison.
+_STEPS, _COARSE_STEPS = 4.0, 2.0
+Numbers = dict[str, float]
+
+
+@dataclass(frozen=True)
+class WhiteNoiseResolution:
+    """Cells and longest step of both densities; the cells in κ follow from R.
+
+    Attributes
+    ----------
+    grid : PhaseSpaceGrid
+    ds : float
+        Longer of the two steps of an extrapolated run, at most.
+    """
+
+    grid: PhaseSpaceGrid
+    ds: float
+
+    def coarser(self) -> WhiteNoiseResolution:
+        """The discretisation that a run is compared with."""
+        n1, n2, n_alpha = (2 * math.ceil(_FEWER * n / 2) for n in self.grid.shape)
+        grid = PhaseSpaceGrid(self.grid.half_width, (n1, n2, n_alpha))
+        return WhiteNoiseResolution(grid, _LONGER * self.ds)
+
+
+def white_noise_case(
+    part: str,
+    potential: Potential,
+    noise: float,
+    relaxation_length: float,
+    belt_speed: float,
+    **options: Any,
+) -> Numbers:
+    """One part of a study at one R; see `PARTS`."""
+    curve = MovingBelt(belt_speed) if belt_speed else FixedBelt()
+    model = SmoothLayDownModel(potential, relaxation_length, noise, curve)
+    return dict(PARTS[part](model, **options))
+
+
+def density_case(
+    model: SmoothLayDownModel,
+    law: GaussianLaw,
+    s_end: float,
+    resolution: WhiteNoiseResolution,
+) -> Numbers:
+    """Distances of the densities of (ξ, α) from one start, κ from its Gaussian."""
+    fine, coarse = (
+        _densities(model, law, s_end, one) for one in (resolution, resolution.coarser())
+    )
+    errors = {f"{name}_error": abs(one - coarse[name]) for name, one in fine.items()}
+    return {**fine, **errors}
+
+
+def _densities(
+    model: SmoothLayDownModel,
+    law: GaussianLaw,
+    s_end: float,
+    resolution: WhiteNoiseResolution,
+) -> Numbers:
+    grid = curved_grid(model, resolution.grid)
+    plain = grid.phase_space
+    p0 = initial.gaussian(plain, law.mean, law.variance, law.angle, law.concentration)
+    n_steps = math.ceil(s_end / resolution.ds)
+    run: dict[str, Any] = {"extrapolate": True, "record_every": n_steps}
+    span, ds = (0.0, s_end), s_end / n_steps
+    basic = drift_kick(model.white_noise_limit, plain)
+    limit = solve(basic, p0, span, ds, **run).final
+    start = initial.with_curvature(p0, grid, model.curvature_variance)
+    smooth: Any = SmoothDriftKick(model, grid)
+    found = solve(smooth, start, span, ds, **run).final
+    return _apart(diagnostics.marginal(found, grid, "xi_alpha"), limit, plain)
+
+
+def curved_grid(
+    model: SmoothLayDownModel, grid: PhaseSpaceGrid
+) -> SmoothPhaseSpaceGrid:
+    """A grid with the curvatures of the noise and of the mean square of the force."""
+    force = sum(gibbs_nodes(model.potential).mean_square_forces()) / 2
+    deviation = math.sqrt(model.curvature_variance)
+    half_width = _DEVIATIONS * math.hypot(deviation, math.sqrt(force))
+    n_kappa = 2 * math.ceil(half_width / (_CELL * deviation))
+    return SmoothPhaseSpaceGrid(grid.half_width, half_width, (*grid.shape, n_kappa))
+
+
+def _apart(p: Array, limit: Array, grid: PhaseSpaceGrid) -> Numbers:
+    """L1 norms of densities, absolute differences of moments."""
+    away = np.abs(p - limit).sum() * grid.cell_volume
+    numbers = {"joint": float(away)}
+    for name, axes in (("marginal", "xi"), ("angle", "alpha")):
+        one, other = (diagnostics.marginal(q, grid, axes) for q in (p, limit))
+        cell = grid.cell_area if axes == "xi" else grid.spacing[2]
+        numbers[name] = float(np.abs(one - other).sum()) * cell
+    full, reduced = (diagnostics.moments(q, grid) for q in (p, limit))
+    differences = {name: full[name] - reduced[name] for name in full}
+    numbers["mean"] = math.hypot(differences["mean_xi1"], differences["mean_xi2"])
+    numbers["direction"] = math.hypot(
+        differences["mean_cos_alpha"], differences["mean_sin_alpha"]
+    )
+    numbers["second_moment"] = abs(second_moment(full) - second_moment(reduced))
+    return numbers
+
+
+def paths_case(
+    model: SmoothLayDownModel, law: GaussianLaw, s_end: float, n_paths: int, seed: int
+) -> Numbers:
+    """Mean distances of paths with the same Wiener process."""
+    fine, coarse = (
+        coupled_distances(model, law, s_end, steps, n_paths, seed)
+        for steps in (_STEPS, _COARSE_STEPS)
+    )
+    numbers: Numbers = {}
+    for name in ("angle", "position", "corrected"):
+        # Chance of both, and what the steps of one change.
+        change = abs(fine[name] - coarse[name])
+        numbers[name] = fine[name]
+        numbers[f"{name}_error"] = change + fine[f"{name}_error"]
+    return numbers
+
+
+# In the order in which they are computed: the long ones first.
+PARTS: dict[str, Callable[..., Mapping[str, float]]] = {
+    "density": density_case,
+    "paths": paths_case,
+}
