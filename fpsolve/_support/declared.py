@@ -27,7 +27,7 @@ _TEXTS = (
 _NUMBERS = (
     "ds", "s_start", "false_alarm", "gap", "gap_error", "essential", "noise", "radius",
     "g_max", "slow_length", "belt_speed_scale", "fixed_speed", "expected_order",
-    "tolerance", "s_end", "belt_speed",
+    "tolerance", "s_end", "belt_speed", "titer",
 )  # fmt: skip
 _INTEGERS = (
     "n_paths", "n_steps", "n_cells", "kept", "agrees", "quick", "signed",
@@ -37,7 +37,7 @@ _INTEGERS = (
 _TABLES = (
     "model", "grid", "scheme", "initial", "potential", "p0", "settings", "options",
     "solver", "sampler", "versions", "environment", "provenance", "call",
-    "fpsolve_checksums",
+    "fpsolve_checksums", "process", "web",
 )  # fmt: skip
 _LISTS = ("saved_steps", "truncation", "sectors", "fpsolve_attributes")
 OWN = frozenset((*_TEXTS, *_NUMBERS, *_INTEGERS, *_TABLES, *_LISTS))
@@ -132,6 +132,11 @@ def _types() -> TypeAdapter[Any]:
         "environment": _environment_type(), "provenance": _provenance_type(),
         "call": _entries("Call", {"function": str, "arguments": _TABLE}),
         "fpsolve_checksums": _TEXTS_BY_NAME,
+        "web": _entries("Web", {
+            "window": dict[str, float], "reach": list[list[float]], "n_burn": count,
+            "remainder": float, "relaxation": float, "periodic": bool, "origin": float,
+            "spacing": float, "speed": float,
+        }),
     }))  # fmt: skip
 
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 import warnings
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
+from typing import Any, ClassVar
 
 from numpy.typing import ArrayLike
 
@@ -82,6 +83,8 @@ class Process:
     [KMW09]_, section 3.1, remark 3.1, and section 3.2.
     """
 
+    _recorded: ClassVar[str] = "process"
+
     sigma1: float
     sigma2: float
     noise: float
@@ -144,6 +147,10 @@ class Process:
         A density of (ξ, α) stays a density per radian in α.
         """
         return _times(p, self.length**-2)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the parameters as a JSON-able dictionary."""
+        return asdict(self)
 
     def _check_relaxation_length(self) -> None:
         if self.relaxation_length is None:

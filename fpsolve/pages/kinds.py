@@ -22,6 +22,7 @@ PAGES: dict[str, str | Callable[[Any, str], Section]] = {
     "spectral-steady-state": "fpsolve.pages.plain:spectral_steady_state",
     "energy-paths": "fpsolve.pages.plain:energy_paths",
     "hydrodynamic-paths": "fpsolve.pages.plain:hydrodynamic_paths",
+    "web": "fpsolve.pages.web:section",
     "check": "fpsolve.pages.cross_check:section",
     "spectrum": "fpsolve.pages.spectrum:section",
     "rate": "fpsolve.pages.rates:section",

@@ -138,6 +138,7 @@ FIGURES: dict[str, Callable[[Any], Figures]] = {
     "spectral-steady-state": each(),
     "energy-paths": each(energies=(plot_energy_paths, always)),
     "hydrodynamic-paths": each(moments=(plot_hydrodynamic_paths, always)),
+    "web": each(),
     "check": each(check=(plot_cross_check, always)),
     # Beside the model that they are of.
     "spectrum": each(spectrum=(plot_spectrum, lambda found: found.model is not None)),

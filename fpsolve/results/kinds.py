@@ -91,6 +91,9 @@ KINDS = {
         "fpsolve.reduced.hydrodynamic.limit:HydrodynamicLimit.sample",
         "fpsolve.reduced.hydrodynamic.sampling:HydrodynamicPaths",
     ),
+    "web": Kind(
+        "webs", "fpsolve.web.lay_web:lay_web", "fpsolve.web.web:Web", counts="steps",
+    ),
     "check": Kind(
         "checks of density against paths",
         "fpsolve.studies.agreement.cross_check:cross_check",

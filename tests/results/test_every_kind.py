@@ -106,6 +106,13 @@ MAKERS = {
         50, 1.0, seed=np.random.SeedSequence(7, spawn_key=(1,)),
         initial=(PLANE, start(*PLANE.mesh())), save_at=[0.0, 1.0],
     ),
+    "web": lambda: fp.lay_web(
+        SMOOTH, width=2.0, length=1.0, spacing=0.2, pixel=0.25, seed=4
+    ),
+    "web, of a process": lambda: fp.lay_web(
+        fp.Process(5e-3, 5e-3, 15.0, 0.2, 20.0), width=0.01, length=0.01,
+        pixel=1e-3, positions=[0.0, 4e-3, 5e-3], spacing=2e-3, titer=1e-4, seed=4,
+    ),
     "check": lambda: studies.cross_check(
         REST, start_on(FINER), [0.5], n_paths=1000, seed=1, grid=FINER, ds=0.25,
         paths_ds=0.125, solve_options={"boundary_tolerance": 1.0},
@@ -260,6 +267,7 @@ NUMBERS = {
     "energy-paths": lambda found: f"{found.g[-1].mean():.5g}",
     "hydrodynamic-paths": lambda found: f"{found.mean()[0][-1, 0]:.5g}",
     "spectrum": lambda found: f"{found.gap:.12g}",
+    "web": lambda found: f"{found.mean_length_density():.6g}",
     "averages": lambda found: f"{float(found['expectation'][0]):.6g}",
     "small-noise-spectrum": lambda found: f"{float(found['limit'][0]):.6g}",
 }

@@ -15,6 +15,7 @@ from fpsolve.evolution.call import ARRAY, KEPT, USER_CODE, Call
 from fpsolve.grids.dictionaries import grid_from_dict
 from fpsolve.grids.plane import PlaneGrid
 from fpsolve.model.potentials.dictionaries import potential_from_dict
+from fpsolve.model.process import Process
 from fpsolve.model.reading import model_from_dict
 from fpsolve.paths.law_dataset import law_from_formula
 from fpsolve.paths.laws import DensityLaw
@@ -58,6 +59,7 @@ READERS: dict[str, Callable[[Any], Any]] = {
     "$plane": PlaneGrid.from_dict,
     "$law": law_from_formula,
     "$density_law": lambda about: DensityLaw(about["grid"], about["p"]),
+    "$process": lambda about: Process(**about),
     "$sector": lambda about: Sector(**about),
     _SCHEME: _scheme,
     "$seed": _seed,
