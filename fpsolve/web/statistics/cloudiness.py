@@ -28,6 +28,10 @@ def cloudiness(
     Cosines continue the web as a mirror does: an edge is no jump, which sines and
     cosines over a web that is not periodic would take for short waves.
 
+    A narrow band has few waves, which reach over many blocks. The standard error is
+    the larger one of that of the blocks, which fibres in clumps widen, and that of
+    independent normal coefficients.
+
     Parameters
     ----------
     length_density, pixel
@@ -85,11 +89,27 @@ class _Waves:
 
         shortest, longest = band
         inside = (self.wavelength >= shortest) & (self.wavelength < longest)
-        part = idctn(np.where(inside, self.coefficients, 0.0), norm="ortho")
+        waves = np.where(inside, self.coefficients, 0.0)
+        part = idctn(waves, norm="ortho")
         # No wave is longer than twice the web.
         longest = min(longest, 2.0 * self.pixel * max(self.density.shape))
         blocks = choose_blocks(part, self.pixel, block, longest)
-        return estimate(_relative_power, [part**2, self.density], blocks)
+        found = estimate(_relative_power, [part**2, self.density], blocks)
+        scale = self.density.size * self.density.mean() ** 2
+        return _at_least(found, _gaussian_error(waves) / scale)
+
+
+def _gaussian_error(waves: Array) -> float:
+    """Return the standard error of Σ c² for normal c: 2 c⁴/3 estimates 2 σ⁴."""
+    return math.sqrt(2.0 / 3.0 * float(np.sum(waves**4)))
+
+
+def _at_least(found: Estimate, error: float) -> Estimate:
+    """Return the estimate with a standard error of at least that; NaN stays."""
+    largest = float(np.maximum(found.standard_error, error))
+    return Estimate(
+        float(found), largest, found.n_blocks, found.n_samples, found.reason
+    )
 
 
 def _relative_power(means: Array) -> Array:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -22,6 +23,8 @@ __all__ = [
     "zone_means",
 ]
 
+# Blocks along a side of a square web for its mean.
+_BLOCKS_ACROSS = 4
 # Relative; what rounding makes of the number of zones, and of an edge of zones that is
 # one of pixels.
 _ROUNDING, _EDGE = 1e-9, 1e-12
@@ -92,7 +95,9 @@ def mean_density(
     Estimate
     """
     density, pixel = check_density(length_density, pixel)
-    blocks = choose_blocks(density, pixel, block)
+    # Products of densities forget sooner than densities do, for which 64 blocks serve.
+    extent = pixel * math.sqrt(density.size)
+    blocks = choose_blocks(density, pixel, block, extent / _BLOCKS_ACROSS)
     return estimate(lambda means: means[..., 0], [density], blocks)
 
 
