@@ -6,6 +6,8 @@ from . import paths as paths
 from . import plotting as plotting
 from . import studies as studies
 from .density.checkpoints import Checkpoint as Checkpoint
+from .density.periodic_state import PeriodicState as PeriodicState
+from .density.periodic_state import periodic_state as periodic_state
 from .density.resume import resume as resume
 from .density.schemes import drift_kick as drift_kick
 from .density.schemes import semi_lagrangian as semi_lagrangian

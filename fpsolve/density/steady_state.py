@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
@@ -30,7 +29,7 @@ from fpsolve.density.stationary.estimates import (
 from fpsolve.density.stationary.iteration import Stationary, settled, stationary
 from fpsolve.density.stationary.other_schemes import judged, own_density
 from fpsolve.density.stationary.refinement import Refined, refined
-from fpsolve.density.stationary.remedies import remedy
+from fpsolve.density.stationary.remedies import WORTHLESS, check_error, remedy
 from fpsolve.density.stationary.requirements import check_stationary, checked_step
 from fpsolve.density.stationary.result import SteadyState
 from fpsolve.density.suggestions import suggest_step
@@ -54,8 +53,6 @@ INTERPOLATION_ORDER = 12
 FIRST_ERROR, LARGEST_TURN = 0.05, 1.5
 # Share of the tolerance for the step; the grid takes the most.
 STEP_SHARE = 0.2
-# Above, an estimate is no more than a sign that nothing is resolved.
-WORTHLESS = 0.1
 # Densities that the Krylov iteration keeps, and the strides.
 DIRECTIONS = 60.0
 # The combination that a single step length is compared with has an error, too.
@@ -150,7 +147,10 @@ def steady_state(
     else:
         result, order = by_scheme(scheme, request)
     check_boundary(result, boundary_tolerance, request.error_tolerance, order)
-    check_error(result, request.error_tolerance, order)
+    tolerance = request.error_tolerance
+    check_error(
+        "stationary", result, tolerance, lambda: remedy(result, tolerance, order)
+    )
     return result
 
 
@@ -272,21 +272,4 @@ def check_boundary(
         raise ToleranceError(result.error, tolerance, remedy(result, tolerance, order))
     raise DomainTooSmallError(
         share, result.grid.half_width, tolerance=boundary_tolerance
-    )
-
-
-def check_error(result: SteadyState, tolerance: float, order: float) -> None:
-    """Warn above the tolerance; ToleranceError where nothing is resolved."""
-    if result.error <= tolerance:
-        return
-    advice = remedy(result, tolerance, order)
-    if not result.error <= max(WORTHLESS, tolerance):
-        raise ToleranceError(result.error, tolerance, advice)
-    parts = ", ".join(f"{name} {size:.1g}" for name, size in result.errors.items())
-    warnings.warn(
-        f"the stationary density has an L1 error of about {result.error:.1g} "
-        f"({parts}), above `error_tolerance` = {tolerance:g}; {advice}, or raise "
-        "`error_tolerance` if this is enough.",
-        UserWarning,
-        stacklevel=5,
     )

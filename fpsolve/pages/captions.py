@@ -64,6 +64,11 @@ CAPTIONS = {
         "density of the angle; dashed: uniform.",
         "Map of the stationary density and curve over the angle",
     ),
+    "periodic-state/phases": (
+        "Left: the density over the plane at four phases of the period; white: contours "
+        "of c exp(-B). Below: E ξ and E τ over the period.",
+        "Maps of the density at four phases and curves of its means",
+    ),
     "spectral/series": (
         "Relative entropy and means over s, with estimated errors.",
         "Curves of entropy and means",

@@ -18,6 +18,7 @@ PAGES: dict[str, str | Callable[[Any, str], Section]] = {
     "hydrodynamic": "fpsolve.pages.limit_solutions:hydrodynamic_section",
     "energy": "fpsolve.pages.limit_solutions:energy_section",
     "steady-state": "fpsolve.pages.plain:steady_state",
+    "periodic-state": "fpsolve.pages.periodic:section",
     "spectral": "fpsolve.pages.plain:spectral",
     "spectral-steady-state": "fpsolve.pages.plain:spectral_steady_state",
     "energy-paths": "fpsolve.pages.plain:energy_paths",

@@ -25,6 +25,7 @@ from fpsolve.plotting.limits import plot_large_noise, plot_white_noise
 from fpsolve.plotting.marginals import plot_marginals
 from fpsolve.plotting.moments import plot_moments
 from fpsolve.plotting.overview import plot_overview
+from fpsolve.plotting.periodic import plot_periodic_state
 from fpsolve.plotting.rates import (
     plot_asymptotic_variance,
     plot_inverse_decay_rate,
@@ -133,6 +134,7 @@ FIGURES: dict[str, Callable[[Any], Figures]] = {
     "hydrodynamic": each(hydrodynamic=(plot_hydrodynamic, saved)),
     "energy": each(law=(plot_energy_law, saved)),
     "steady-state": each(stationary=(plot_steady_state, always)),
+    "periodic-state": each(phases=(plot_periodic_state, always)),
     "spectral": each(series=(plot_spectral, always)),
     # A density on whatever grid is chosen, and none before.
     "spectral-steady-state": each(),

@@ -72,6 +72,10 @@ KINDS = {
         "stationary densities", "fpsolve.density.steady_state:steady_state",
         "fpsolve.density.stationary.result:SteadyState",
     ),
+    "periodic-state": Kind(
+        "time-periodic densities", "fpsolve.density.periodic_state:periodic_state",
+        "fpsolve.density.periodic.result:PeriodicState",
+    ),
     "spectral": Kind(
         "expansions in time", "fpsolve.spectral.evolution.evolution:spectral_solve",
         "fpsolve.spectral.evolution.solution:SpectralSolution",

@@ -25,6 +25,7 @@ from fpsolve.results.kinds import KINDS, from_xarray, kind_of, named
 QUADRATIC = fp.QuadraticPotential()
 REST = fp.LayDownModel(QUADRATIC, 1.0)
 BELT = fp.LayDownModel(QUADRATIC, 1.0, fp.MovingBelt(0.2))
+TURNING = fp.LayDownModel(QUADRATIC, 1.5, fp.RotatingNozzle(0.2, 0.5, 1.0))
 SMOOTH = fp.SmoothLayDownModel(QUADRATIC, 0.5, 1.0, fp.MovingBelt(0.2))
 PROCESS = fp.EnergyProcess(QUADRATIC, 0.5)
 LIMIT = fp.HydrodynamicLimit(fp.LayDownModel(QUADRATIC, 2.0, fp.MovingBelt(0.1)))
@@ -90,6 +91,9 @@ MAKERS = {
         fp.SmoothLayDownModel(QUADRATIC, 0.3, 2.0),
         fp.SmoothPhaseSpaceGrid(5.5, 13.4, (14, 14, 12, 16)),
         ds=0.1, tolerance=1e-4, error_tolerance=1.0, boundary_tolerance=0.1,
+    ),
+    "periodic-state": lambda: fp.periodic_state(
+        TURNING, FINER, n_phases=4, error_tolerance=1.0
     ),
     "spectral": lambda: fp.spectral_solve(
         REST, NARROW, [0.0, 1.0], tolerance=1e-2
@@ -262,6 +266,7 @@ def test_a_result_is_told_with_figures_and_where_it_comes_from(name, request):
 # Numbers that a page must tell, by the kind.
 NUMBERS = {
     "steady-state": lambda found: f"{found.error:.2g}",
+    "periodic-state": lambda found: f"{found.error:.2g}",
     "spectral": lambda found: f"{found.mean_xi1[-1]:.10g}",
     "spectral-steady-state": lambda found: f"{found.moments['mean_xi1']:.10g}",
     "energy-paths": lambda found: f"{found.g[-1].mean():.5g}",

@@ -34,9 +34,12 @@ def lagrange_weights(fraction: Array, order: int) -> Array:
     """
     taps = np.arange(1 - order // 2, order // 2 + 1)
     weights = np.ones((order, fraction.size))
-    for row, tap in enumerate(taps):
-        for other in taps[taps != tap]:
-            weights[row] *= (fraction - other) / (tap - other)
+    for row, other in enumerate(taps):
+        # The factor of every tap but this one itself.
+        apart = np.where(taps == other, 1, taps - other)
+        factors = (fraction - other) / apart[:, None]
+        factors[row] = 1.0
+        weights *= factors
     return unit_sum(weights / weights.sum(axis=0))
 
 

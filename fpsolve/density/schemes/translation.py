@@ -34,6 +34,12 @@ class Translation:
         Number of points of the interpolation in each direction, even.
     positive : bool
         Clamp the fluxes.
+
+    Attributes
+    ----------
+    kept : int
+        Taps that are remembered: those of a few steps, unless a whole period of a
+        curve is gone through again and again.
     """
 
     def __init__(
@@ -47,6 +53,7 @@ class Translation:
         self.grid = grid
         self.order = check_order(order)
         self.positive = positive
+        self.kept = _KEPT
         self._taps: dict[tuple[float, float], tuple[Taps, ...]] = {}
 
     def shifts(self, s: float, ds: float) -> tuple[Array, Array]:
@@ -69,8 +76,12 @@ class Translation:
         if key in known:
             return known[key]
         made = self._make_taps(start, ds)
-        # A new table takes the place of the old: a thread may be reading that.
-        self._taps = {**(known if len(known) < _KEPT else {}), key: made}
+        # A thread may be reading: entries are added, but none is taken away; a new
+        # table takes the place of one that is full.
+        if len(known) < self.kept:
+            known[key] = made
+        else:
+            self._taps = {key: made}
         return made
 
     def _make_taps(self, s: float, ds: float) -> tuple[Taps, ...]:

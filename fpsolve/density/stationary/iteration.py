@@ -10,7 +10,7 @@ from fpsolve._support.arrays import Array
 from fpsolve.density.schemes.drift_kick import DriftKick
 from fpsolve.density.stationary.acceleration import Acceleration
 from fpsolve.density.stationary.correction import Correction
-from fpsolve.density.stationary.strides import Strides
+from fpsolve.density.stationary.strides import STRIDE, Strides
 from fpsolve.errors import SteadyStateError
 from fpsolve.grids import diagnostics
 
@@ -66,8 +66,9 @@ class Stationary:
 
 
 def settled(
-    scheme: DriftKick, ds: float, start: Array, goal: float, residual: float = np.inf
-) -> Stationary:
+    scheme: DriftKick, ds: float, start: Array, goal: float, residual: float = np.inf,
+    length: float = STRIDE,
+) -> Stationary:  # fmt: skip
     """The extrapolated density with an error of the step below `goal`, if possible.
 
     The step is halved until then, or until that gains less than half.
@@ -80,7 +81,8 @@ def settled(
     found = None
     for halvings in range(HALVINGS + 1):
         try:
-            finer = stationary(scheme, ds / 2**halvings, start, goal, residual)
+            step = ds / 2**halvings
+            finer = stationary(scheme, step, start, goal, residual, length=length)
         except SteadyStateError:
             if found is None and halvings < RETRIES:
                 continue
@@ -104,8 +106,9 @@ def stationary(
     goal: float,
     residual: float = np.inf,
     extrapolate: bool = True,
+    length: float = STRIDE,
 ) -> Stationary:
-    """The density that a stride reproduces.
+    """The density that a stride of this length reproduces.
 
     The answer of all step lengths tells what is wrong, that of ds alone what to do
     about it: p ← p + (I − E_ds)⁻¹ (E p − p), until the corrections that would follow
@@ -116,7 +119,7 @@ def stationary(
     SteadyStateError
         If that is not reached.
     """
-    strides = Strides(scheme, ds, extrapolate)
+    strides = Strides(scheme, ds, extrapolate, length)
     p = start / diagnostics.mass(start, scheme.grid)
     images = strides(p)
     correct = Correction(strides.longest, p, images[0])

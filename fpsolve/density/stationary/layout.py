@@ -22,11 +22,11 @@ from fpsolve.evolution.series import long_name
 from fpsolve.grids.dictionaries import grid_from_dict
 from fpsolve.grids.smooth_sums import SMOOTH_MOMENTS
 
-__all__ = ["STATIONARY"]
+__all__ = ["STATIONARY", "Named"]
 
 
 @dataclass(frozen=True)
-class _Named(Part):
+class Named(Part):
     """A mapping of floats: one variable over their names."""
 
     name: str
@@ -36,9 +36,11 @@ class _Named(Part):
 
     @property
     def needed(self) -> tuple[str, ...]:
+        """The numbers and their names."""
         return self.name, self.over
 
     def write(self, result: Any) -> Stored:
+        """The numbers over their names."""
         numbers = getattr(result, self.field)
         values = np.array([*numbers.values()], dtype=np.float64)
         names = np.array([*numbers], dtype=object)
@@ -46,6 +48,7 @@ class _Named(Part):
                 self.over: (self.over, names)}  # fmt: skip
 
     def read(self, source: Source) -> dict[str, Any]:
+        """The mapping."""
         check_dimensions(source.dataset, self.name, (self.over,))
         names, values = (source.dataset[one].values for one in (self.over, self.name))
         pairs = zip(names, values, strict=True)
@@ -74,8 +77,8 @@ STATIONARY = Layout(
     Model(),
     OnGrid(grid_from_dict, "stationary density p(ξ₁, ξ₂, α)", "density", over=()),
     Variable("density_l1_error", (), "estimated L¹ error of p", "error", float),
-    _Named("part_error", "part", "parts of that error", "errors"),
-    _Named("splitting", "quantity", "what one run with ds adds", "splitting"),
+    Named("part_error", "part", "parts of that error", "errors"),
+    Named("splitting", "quantity", "what one run with ds adds", "splitting"),
     Variable("residual", (), "L¹ rate at which p still changes", kind=float),
     Variable("n_applications", (), "evolutions it took", kind=int),
     _Moments(),

@@ -18,7 +18,7 @@ from fpsolve.density.stationary.iteration import Stationary
 from fpsolve.density.stationary.start import start_on
 from fpsolve.errors import SteadyStateError
 
-__all__ = ["Refined", "refined"]
+__all__ = ["SHARES", "Refined", "covering", "refined"]
 
 # Computes the density of a scheme from a start and a step.
 Solver = Callable[[DriftKick, Array, float], Stationary]
@@ -76,9 +76,7 @@ def refined(scheme: DriftKick, ds: float, solver: Solver) -> Refined:
         ds = found.ds
     *coarser, finest = results
     differences = [carried(p.density, grid.shape) - finest.density for p in coarser]
-    ratio = _ratio(differences[0], differences[-1])
-    factor = FACTOR if ratio > LEAST_RATIO else LOW_ORDER
-    order = math.log(ratio) / math.log(SHARES[1] / SHARES[0])
+    factor, order = covering(differences)
     n_applications = sum(one.n_applications for one in results)
     return Refined(finest, factor * differences[-1], order, n_applications)
 
@@ -88,6 +86,13 @@ def start_for(scheme: DriftKick, coarser: Sequence[Stationary]) -> Array:
     if not coarser:
         return start_on(scheme.grid, scheme.model)
     return carried(coarser[-1].density, scheme.grid.shape)
+
+
+def covering(differences: Sequence[Array]) -> tuple[float, float]:
+    """What the last difference from a coarser grid is multiplied by, and the order."""
+    ratio = _ratio(differences[0], differences[-1])
+    factor = FACTOR if ratio > LEAST_RATIO else LOW_ORDER
+    return factor, math.log(ratio) / math.log(SHARES[1] / SHARES[0])
 
 
 def _ratio(first: Array, second: Array) -> float:

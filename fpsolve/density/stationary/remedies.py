@@ -3,23 +3,65 @@
 from __future__ import annotations
 
 import math
+import warnings
+from collections.abc import Callable
 from typing import Any
 
-from fpsolve.density.stationary.result import SteadyState
 from fpsolve.density.stationary.start import concentration_of
+from fpsolve.errors import ToleranceError
 from fpsolve.model.fibre import FibreModel
 
-__all__ = ["remedy"]
+__all__ = ["WORTHLESS", "check_error", "remedy"]
 
 # Orders in which the number of cells is extrapolated.
 LOWEST, HIGHEST = 1.0, 12.0
 # Share of the tolerance that a part may have after what is proposed.
 SHARE = 0.4
 WIDENING, WIDEST = 1.02, 8.0
+# Above, an estimate is no more than a sign that nothing is resolved.
+WORTHLESS = 0.1
 
 
-def remedy(result: SteadyState, tolerance: float, order: float) -> str:
-    """Advice for every part of the error that is too large."""
+def check_error(
+    what: str, result: Any, tolerance: float, advice: Callable[[], str]
+) -> None:
+    """Warn above the tolerance; ToleranceError where nothing is resolved.
+
+    Parameters
+    ----------
+    what : str
+        Kind of density.
+    result : SteadyState or PeriodicState
+    tolerance : float
+    advice : callable
+        What would be accurate enough.
+    """
+    if result.error <= tolerance:
+        return
+    told = advice()
+    if not result.error <= max(WORTHLESS, tolerance):
+        raise ToleranceError(result.error, tolerance, told)
+    parts = ", ".join(f"{name} {size:.1g}" for name, size in result.errors.items())
+    warnings.warn(
+        f"the {what} density has an L1 error of about {result.error:.1g} "
+        f"({parts}), above `error_tolerance` = {tolerance:g}; {told}, or raise "
+        "`error_tolerance` if this is enough.",
+        UserWarning,
+        stacklevel=5,
+    )
+
+
+def remedy(result: Any, tolerance: float, order: float) -> str:
+    """Advice for every part of the error that is too large.
+
+    Parameters
+    ----------
+    result : SteadyState or PeriodicState
+        Of a model on a belt of constant speed, or the mean one.
+    tolerance : float
+    order : float
+        At which the error falls with the cells.
+    """
     goal = SHARE * tolerance
     advice = []
     widening = 1.0

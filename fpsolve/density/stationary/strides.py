@@ -13,7 +13,7 @@ from fpsolve.density.schemes.form import State
 from fpsolve.density.schemes.scheme import Scheme
 from fpsolve.evolution.richardson import weights_of
 
-__all__ = ["Stride", "Strides"]
+__all__ = ["DIVISORS", "STRIDE", "Stride", "Strides"]
 
 
 # One application of the map covers about this arclength: long enough for the slow
@@ -32,11 +32,15 @@ class Stride:
     ds : float
     divisor : int
         Make this many steps of ds/divisor for every one of ds.
+    length : float
+        The arclength to cover, rounded to a whole number of steps; from s = 0.
     """
 
-    def __init__(self, scheme: Scheme, ds: float, divisor: int = 1) -> None:
+    def __init__(
+        self, scheme: Scheme, ds: float, divisor: int = 1, length: float = STRIDE
+    ) -> None:
         self.scheme, self.ds = scheme, ds / divisor
-        self.n_steps = divisor * max(1, round(STRIDE / ds))
+        self.n_steps = divisor * max(1, round(length / ds))
         self.n_applications = 0
 
     @property
@@ -68,11 +72,16 @@ class Strides:
     ds : float
     extrapolate : bool
         Whether `answer` is the combination, or the stride with ds alone.
+    length : float
+        As for `Stride`.
     """
 
-    def __init__(self, scheme: DriftKick, ds: float, extrapolate: bool = True) -> None:
+    def __init__(
+        self, scheme: DriftKick, ds: float, extrapolate: bool = True,
+        length: float = STRIDE,
+    ) -> None:  # fmt: skip
         self.extrapolate = extrapolate
-        self.evolutions = [Stride(scheme, ds, j) for j in DIVISORS]
+        self.evolutions = [Stride(scheme, ds, j, length) for j in DIVISORS]
 
     @property
     def n_applications(self) -> int:

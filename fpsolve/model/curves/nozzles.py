@@ -58,6 +58,11 @@ class _Nozzle(Curve):
         return along, radius2 * chord * math.cos(middle)
 
     @property
+    def period(self) -> float:
+        """Arclength 2π/|ω| after which γ' repeats itself; infinite for ω = 0."""
+        return 2 * math.pi / abs(self.angular_speed) if self.angular_speed else math.inf
+
+    @property
     def autonomous(self) -> bool:
         """Whether the nozzle is at rest, so that only the belt moves."""
         return self.angular_speed == 0 or self.radii == (0, 0)

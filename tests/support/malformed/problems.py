@@ -17,6 +17,12 @@ def model(noise=1.0, speed=0.0):
 
 
 @cache
+def turning():
+    curve = fp.RotatingNozzle(0.1, 0.5, 1.0)
+    return fp.LayDownModel(fp.QuadraticPotential(), 1.0, curve)
+
+
+@cache
 def grid():
     return fp.PhaseSpaceGrid(6.0, (12, 12, 8))
 
