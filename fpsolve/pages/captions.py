@@ -69,6 +69,28 @@ CAPTIONS = {
         "of c exp(-B). Below: E ξ and E τ over the period.",
         "Maps of the density at four phases and curves of its means",
     ),
+    "web/light": (
+        "The web against light: the more fibre, the darker. The machine direction runs "
+        "to the right.",
+        "Grey image of the fibres of the web",
+    ),
+    "web/mass": (
+        "Mass per area, or laid length per area where there are no units.",
+        "Map of the mass of the web",
+    ),
+    "web/variation": (
+        "Coefficient of variation of the mass of square zones over their side, with "
+        "standard errors from independent blocks, beside that of straight fibres.",
+        "Curve of the coefficient of variation over the side of zones",
+    ),
+    "web/directions": (
+        "How much fibre lies in which direction; the machine direction to the right.",
+        "Rose of the directions of the fibres",
+    ),
+    "web/spectrum": (
+        "Power spectrum of the mass per area: map, and sections along and across.",
+        "Map and curves of the power spectrum of the web",
+    ),
     "spectral/series": (
         "Relative entropy and means over s, with estimated errors.",
         "Curves of entropy and means",

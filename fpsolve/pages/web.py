@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from fpsolve.pages.blocks import Facts, Paragraph, Part, Section, Table
+from fpsolve.pages.blocks import Facts, Part, Section, Table
 from fpsolve.pages.figures import drawings
 from fpsolve.pages.origin import provenance_part
 from fpsolve.pages.settings import model_facts, model_or_unread
@@ -37,12 +37,11 @@ def section(web: Web, source: str) -> Section:
     ]  # fmt: skip
     if web.base_weight is not None:
         items.append(("base weight", f"titer/(v d) = {web.base_weight:.4g} g/m²"))
-    figures = [*drawings(web)]
     return Section("Web", source, [
         Part("Equation", [*model_or_unread(web.model, web.provenance)]),
         Part("Parameters", [Facts(items)]),
         Part("Homogeneity", [_means(web), _variation(web)]),
-        Part("Figures", figures or [Paragraph("There is no figure: of this web.")]),
+        Part("Figures", drawings(web)),
         provenance_part(web.provenance, call=web.call),
     ])  # fmt: skip
 

@@ -41,6 +41,9 @@ from fpsolve.plotting.small_noise import plot_small_noise, plot_small_noise_spec
 from fpsolve.plotting.spectrum import plot_spectrum
 from fpsolve.plotting.stationary import plot_steady_state
 from fpsolve.plotting.trajectories import plot_trajectories
+from fpsolve.plotting.web_quality import plot_rose, plot_variation
+from fpsolve.plotting.web_spectrum import plot_web_spectrum
+from fpsolve.plotting.webs import plot_mass, plot_web
 from fpsolve.reduced.energy.process import EnergyProcess
 
 if TYPE_CHECKING:
@@ -54,6 +57,8 @@ __all__ = ["FIGURES"]
 
 # One has no curve, and nothing is fitted to it.
 FEWEST_NOISES = 2
+# Along either side of a web.
+FEWEST_PIXELS = 64
 
 
 def each(**figures: tuple[Plot, Callable[[Any], bool]]) -> Callable[[Any], Figures]:
@@ -92,6 +97,11 @@ def known(*names: str) -> Callable[[xr.Dataset], bool]:
 def replayed(paths: Paths) -> bool:
     """Where a path can be run again, which needs its model and its start."""
     return paths.model is not None and (paths.kept or paths.initial is not None)
+
+
+def wide(web: Any) -> bool:
+    """Where a web has pixels enough for blocks that are independent."""
+    return bool(min(web.length_density.shape) >= FEWEST_PIXELS)
 
 
 def of_energy_tables(dataset: xr.Dataset) -> Figures:
@@ -140,7 +150,13 @@ FIGURES: dict[str, Callable[[Any], Figures]] = {
     "spectral-steady-state": each(),
     "energy-paths": each(energies=(plot_energy_paths, always)),
     "hydrodynamic-paths": each(moments=(plot_hydrodynamic_paths, always)),
-    "web": each(),
+    "web": each(
+        light=(plot_web, always),
+        mass=(plot_mass, always),
+        variation=(plot_variation, wide),
+        directions=(plot_rose, wide),
+        spectrum=(plot_web_spectrum, wide),
+    ),
     "check": each(check=(plot_cross_check, always)),
     # Beside the model that they are of.
     "spectrum": each(spectrum=(plot_spectrum, lambda found: found.model is not None)),

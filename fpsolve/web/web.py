@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import os
+from collections.abc import Iterable
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any, ClassVar
 
 import numpy as np
@@ -13,16 +16,17 @@ from fpsolve.evolution.saved import Saved
 from fpsolve.model.fibre import FibreModel
 from fpsolve.model.process import Process
 from fpsolve.web.curves import curve_of
+from fpsolve.web.images import write_csv, write_tiff
 from fpsolve.web.layout import WEB
 from fpsolve.web.plan import Plan
-from fpsolve.web.statistics.estimate import Estimate, Estimates
-from fpsolve.web.statistics.zones import coefficient_of_variation, mean_density
+from fpsolve.web.polylines import write_vtp
+from fpsolve.web.statistics.measures import Measured
 
 __all__ = ["Web"]
 
 
 @dataclass(frozen=True, eq=False)
-class Web(Saved):
+class Web(Saved, Measured):
     """The fibres of many spinning positions on a part of the belt.
 
     All lengths are metres for a web of a `Process`, and else in units of the throwing
@@ -95,7 +99,7 @@ class Web(Saved):
         return self.plan.window.length * self.unit_length
 
     @property
-    def pixel(self) -> float:
+    def pixel(self) -> float:  # type: ignore[override]
         """Side of a pixel."""
         return self.plan.window.pixel * self.unit_length
 
@@ -174,39 +178,6 @@ class Web(Saved):
         rows = [np.stack([first, mixed], -1), np.stack([mixed, 1.0 - first], -1)]
         return np.stack(rows, -2)
 
-    @property
-    def mean_orientation(self) -> Array:
-        """⟨τ ⊗ τ⟩ of all fibre in the window; shape (2, 2)."""
-        weight = self.length_density / self.length_density.sum()
-        first, mixed = (
-            float(np.nansum(weight * part))
-            for part in (self.orientation_11, self.orientation_12)
-        )
-        return np.array([[first, mixed], [mixed, 1.0 - first]])
-
-    def mean_length_density(self) -> Estimate:
-        """The mean length per area with its standard error; 1/(v d) is expected."""
-        return mean_density(self.length_density, self.pixel)
-
-    def coefficient_of_variation(
-        self, zone: Any, *, block: float | None = None
-    ) -> Estimate | Estimates:
-        """CV of the mass of square zones, relative to its mean.
-
-        As `fpsolve.web.statistics.zones.coefficient_of_variation`, which says what is
-        exact and how the standard error comes about.
-
-        Parameters
-        ----------
-        zone : float or sequence of float
-            Side of a zone, or many.
-        block : float, optional
-            Side of the blocks from which the standard error comes.
-        """
-        return coefficient_of_variation(
-            self.length_density, self.pixel, zone, block=block
-        )
-
     def curve(self, fibre: int) -> Array:
         """The corners of one fibre on the belt, shape (n, 2): along and across it.
 
@@ -219,3 +190,47 @@ class Web(Saved):
             If the model was a user's own code that a file cannot hold.
         """
         return curve_of(self.plan, fibre) * self.unit_length
+
+    def to_csv(self, path: str | os.PathLike[str]) -> Path:
+        """Write a table of the pixels: places, length and mass per area, ⟨τ⊗τ⟩.
+
+        Numbers have 17 digits, from which they are read back bit for bit.
+        """
+        return write_csv(self, path)
+
+    def to_tiff(self, path: str | os.PathLike[str]) -> Path:
+        """Write the mass per area, or else the length, in 16 bits with a pixel size.
+
+        65535 stands for the largest value, which the description of the file names as
+        `unit_of_one`; a value is rounded by half of that. The first row is the first
+        across the belt. For a web in metres the size of a pixel is its resolution.
+
+        Raises
+        ------
+        ImportError
+            If tifffile is not installed; it comes with `pip install 'fpsolve[web]'`.
+        """
+        return write_tiff(self, path)
+
+    def to_vtp(
+        self,
+        path: str | os.PathLike[str],
+        *,
+        fibres: Iterable[int] | None = None,
+        diameter: float | None = None,
+    ) -> Path:
+        """Write fibres as polylines for ParaView: where they cross the window.
+
+        Each polyline has the number of its fibre, `fibre`, and `diameter`, if given.
+        Fibres are laid again, one by one.
+
+        Parameters
+        ----------
+        path : str or os.PathLike
+        fibres : iterable of int, optional
+            Numbers of fibres, in the order of their `positions`; by default all.
+        diameter : float, optional
+            Of the fibre, in the unit of the web: 2 √(titer/(π ρ)) for the density ρ of
+            the material in grams per cubic metre.
+        """
+        return write_vtp(self, path, fibres, diameter)

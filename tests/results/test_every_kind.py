@@ -114,7 +114,7 @@ MAKERS = {
         SMOOTH, width=2.0, length=1.0, spacing=0.2, pixel=0.25, seed=4
     ),
     "web, of a process": lambda: fp.lay_web(
-        fp.Process(5e-3, 5e-3, 15.0, 0.2, 20.0), width=0.01, length=0.01,
+        fp.Process(5e-3, 5e-3, 15.0, 0.2, 20.0), width=0.064, length=0.064,
         pixel=1e-3, positions=[0.0, 4e-3, 5e-3], spacing=2e-3, titer=1e-4, seed=4,
     ),
     "check": lambda: studies.cross_check(
@@ -238,7 +238,7 @@ DRAWN_ELSEWHERE = {
     "solution", "paths", "check", "spectrum", "rate", "large-noise", "small-noise",
     "energy-tables", "steady-state", "steady-state, a scheme", "spectral",
     "spectral, from a grid", "energy", "energy-paths", "hydrodynamic",
-    "hydrodynamic, plain", "hydrodynamic-paths",
+    "hydrodynamic, plain", "hydrodynamic-paths", "web", "web, of a process",
 }  # fmt: skip
 
 
