@@ -6,35 +6,17 @@ from typing import Any
 
 import numpy as np
 
-from fpsolve._kernels import raster as kernels
-from fpsolve._support.arrays import check_finite_numbers
-from fpsolve._support.checks import check_positive
 from fpsolve._support.memory import OVERHEAD, allowed_memory, check_memory
 from fpsolve._support.progress import ProgressCallback, reporting
-from fpsolve.errors import FpsolveError
 from fpsolve.evolution.call import recorded
-from fpsolve.model.fibre import FibreModel, check_fibre_model
+from fpsolve.model.fibre import FibreModel
 from fpsolve.model.process import Process
-from fpsolve.paths.randomness import seed_number
-from fpsolve.web.laying import (
-    PIXEL_BYTES,
-    Laid,
-    lay_elsewhere,
-    lay_here,
-    n_workers_for,
-    total,
-)
-from fpsolve.web.plan import Plan, plan_of
+from fpsolve.web.laying import PIXEL_BYTES, lay_elsewhere, lay_here, n_workers_for
+from fpsolve.web.order import order_of, pixels_of
 from fpsolve.web.web import Web
 from fpsolve.web.window import Window
 
-__all__ = ["lay_web"]
-
-# A fibre of a tenth of a gram per metre is a rope.
-_THICKEST = 0.1
-# Pieces of fibre that may lie beyond the margins without one being found, in relaxation
-# lengths: P(none) = e^{-3}.
-_UNSEEN = 3.0
+__all__ = ["Told", "lay_web"]
 
 
 @recorded()
@@ -122,29 +104,21 @@ def lay_web(
     ----------
     [KMW09]_, section 4.2.
     """
-    process = model if isinstance(model, Process) else None
-    model = model.model if isinstance(model, Process) else model
-    check_fibre_model(model)
-    seed, titer = seed_number(seed, None), checked_titer(titer, process)
-    unit = 1.0 if process is None else process.length
-    window = Window.of(width, length, pixel)
-    n_bytes = bytes_of(window)
-    check_memory(2 * n_bytes + OVERHEAD, memory_limit, "use larger pixels")
-    window = Window(window.width / unit, window.length / unit, window.pixel / unit)
-    spacing = in_units("spacing", spacing, unit)
-    ds = in_units("ds", ds, unit)
-    if not isinstance(positions, str):
-        positions = check_finite_numbers("positions", positions) / unit
-    plan = plan_of(model, window, spacing, ds, seed, positions, phases, periodic)
-    schedule = plan.ensemble.schedule
+    check_pixels(Window.of(width, length, pixel), memory_limit)
+    order = order_of(
+        model, width=width, length=length, pixel=pixel, spacing=spacing, ds=ds,
+        positions=positions, phases=phases, seed=seed, periodic=periodic, titer=titer,
+    )  # fmt: skip
+    plan = order.plan
     with reporting(progress) as report:
-        told = Told(report, plan.n_fibres * schedule.n_steps)
+        told = Told(report, plan.n_fibres * plan.ensemble.schedule.n_steps)
         if client is None:
+            n_bytes = bytes_of(plan.window)
             left = allowed_memory(memory_limit) - n_bytes - OVERHEAD
             laid = lay_here(plan, n_workers_for(plan.n_fibres, n_bytes, left), told)
         else:
             laid = lay_elsewhere(plan, client, told)
-    return web_of(plan, laid, process, titer)
+    return order.web(laid, pixels_of(laid.counts, order))
 
 
 class Told:
@@ -159,59 +133,13 @@ class Told:
         self.report(self.n_done, self.n_total, s)
 
 
-def web_of(plan: Plan, laid: Laid, process: Process | None, titer: Any) -> Web:
-    """The web that has been laid, once every count of it is accounted for."""
-    pieces = plan.n_fibres * plan.n_counted
-    inside = total(laid.counts)
-    if inside + laid.outside != pieces * kernels.UNIT:
-        raise FpsolveError(
-            f"the length inside and outside must be that of {pieces} steps, got "
-            f"{(inside + laid.outside) / kernels.UNIT:.6g}; a pixel holds more pieces "
-            "of fibre than its integer: use smaller pixels."
-        )
-    unit = 1.0 if process is None else process.length
-    ds, counts = plan.ensemble.schedule.ds, laid.counts
-    length, first, mixed = np.moveaxis(counts, -1, 0).astype(np.float64)
-    with np.errstate(invalid="ignore"):
-        first, mixed = first / length, mixed / length
-    unseen = _UNSEEN * plan.margins.relaxation / ds
-    return Web(
-        plan=plan,
-        process=process,
-        titer=titer,
-        length_density=length * (ds / kernels.UNIT / plan.window.pixel**2 / unit),
-        orientation_11=first,
-        orientation_12=mixed,
-        laid_length=pieces * ds * unit,
-        outside_length=laid.outside / kernels.UNIT * ds * unit,
-        margin_error=min((laid.beyond + unseen) / max(pieces, 1), 1.0),
-    )
-
-
-def checked_titer(titer: Any, process: Process | None) -> float | None:
-    """The titer; ValueError unless it is one of a fibre of a process."""
-    if titer is None:
-        return None
-    grams = check_positive("titer", titer)
-    if process is None:
-        raise ValueError(
-            f"`titer` must be given with a Process, got {grams:g} for a dimensionless "
-            "model; lengths have no unit there."
-        )
-    if not grams < _THICKEST:
-        raise ValueError(
-            f"`titer` must be below {_THICKEST:g} g/m, got {grams:g}; dtex given "
-            f"instead? {grams:g} dtex are {1e-4 * grams:g} g/m."
-        )
-    return grams
+def check_pixels(window: Window, limit: int | None) -> None:
+    """Raise MemoryLimitError if there is no memory for the pixels."""
+    remedy = "use larger pixels, or `stream_web`, which lays on a disk"
+    check_memory(2 * bytes_of(window) + OVERHEAD, limit, remedy)
 
 
 def bytes_of(window: Window) -> int:
     """Of the counts of a window, and as many of the arrays that are made of them."""
     rows, columns = window.shape
     return PIXEL_BYTES * rows * columns
-
-
-def in_units(name: str, value: Any, unit: float) -> float | None:
-    """A length in units of the throwing range; None as it is."""
-    return None if value is None else check_positive(name, value) / unit

@@ -17,7 +17,17 @@ from fpsolve._support.arrays import Array
 from fpsolve.web.margins import LEG
 from fpsolve.web.plan import Plan
 
-__all__ = ["PIXEL_BYTES", "Laid", "lay_elsewhere", "lay_here", "n_workers_for", "total"]
+__all__ = [
+    "PIXEL_BYTES",
+    "Counts",
+    "Laid",
+    "image_shape",
+    "lay_elsewhere",
+    "lay_here",
+    "lay_on",
+    "n_workers_for",
+    "total",
+]
 
 Counts = NDArray[np.int64]
 # Fibres whose steps are kept at once for every thread: few enough for its cache, and
@@ -61,17 +71,16 @@ class Laying:
     plan : Plan
     first, n : int
         Which fibres.
-    n_workers : int
-        How many images are filled at once.
+    images : ndarray of int64, shape (n_workers, n_rows, n_columns, 3)
+        Zeros; each is filled by one thread.
     """
 
-    def __init__(self, plan: Plan, first: int, n: int, n_workers: int) -> None:
+    def __init__(self, plan: Plan, first: int, n: int, images: Counts) -> None:
         self.plan, self.first, self.n = plan, first, n
         self.motion, self.raster = plan.motion, plan.raster()
         self.state = plan.ensemble.initial_state(first, n)
         self.corners = np.empty((2, n))
-        shape = (n_workers, *plan.window.shape, kernels.N_COUNTED)
-        self.images: Counts = np.zeros(shape, np.int64)
+        n_workers, self.images = len(images), images
         self.tallies: Counts = np.zeros((n_workers, kernels.N_TALLIES), np.int64)
         self.group = _PER_WORKER * n_workers if self.motion.in_phase else _PHASED
         n_traced = min(self.group, n)
@@ -138,14 +147,28 @@ def lay_here(
     plan: Plan, n_workers: int, report: Callable[[int, float], None] | None = None
 ) -> Laid:
     """Lay all fibres with the threads of this process."""
-    laying = Laying(plan, 0, plan.n_fibres, n_workers)
+    images = np.zeros((n_workers, *image_shape(plan)), np.int64)
+    return lay_on(plan, images, report)
+
+
+def lay_on(
+    plan: Plan, images: Counts, report: Callable[[int, float], None] | None = None
+) -> Laid:
+    """Lay all fibres on images that are there, with a thread for each of them."""
+    laying = Laying(plan, 0, plan.n_fibres, images)
     laying.complete(report)
     return laying.result()
 
 
+def image_shape(plan: Plan) -> tuple[int, ...]:
+    """Shape of the counts of a web."""
+    return (*plan.window.shape, kernels.N_COUNTED)
+
+
 def lay_some(plan: Plan, first: int, n: int) -> Laid:
     """Lay some fibres, and return the rows of the image that they touch."""
-    laying = Laying(plan, first, n, 1)
+    images = np.zeros((1, *image_shape(plan)), np.int64)
+    laying = Laying(plan, first, n, images)
     laying.complete()
     laid = laying.result()
     rows = np.flatnonzero(laid.counts[:, :, 0].any(axis=1))
@@ -166,7 +189,7 @@ def lay_elsewhere(
         (n, client.submit(lay_some, plan, first, n))
         for first, n in groups_of(plan.n_fibres)
     )
-    counts = np.zeros((*plan.window.shape, kernels.N_COUNTED), np.int64)
+    counts = np.zeros(image_shape(plan), np.int64)
     outside, beyond, schedule = 0, 0, plan.ensemble.schedule
     while futures:
         n, future = futures.popleft()
@@ -187,6 +210,9 @@ def groups_of(n_fibres: int) -> list[tuple[int, int]]:
 
 def total(counts: Counts) -> int:
     """The sum of counts of length, exactly, however large it is."""
-    length = counts[..., 0]
-    units = int((length >> kernels.UNIT_BITS).sum())
-    return units * kernels.UNIT + int((length & (kernels.UNIT - 1)).sum())
+    # Row by row: the counts may lie on a disk, and not fit into memory.
+    return sum(
+        int((row >> kernels.UNIT_BITS).sum()) * kernels.UNIT
+        + int((row & (kernels.UNIT - 1)).sum())
+        for row in counts[..., 0]
+    )
