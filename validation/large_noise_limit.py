@@ -7,7 +7,7 @@ start with a direction at order 1 unless the start is displaced by the initial l
 With v fixed A²v stays off, the von Mises balance tends to the mean at order 2. gap·A²
 tends to Λ at order 2 and to Λ(1 + cε²) at order 4. Densities on grids agree with
 expansions, which share no code with them, and p_S of a belt at rest is that of the
-limit at every noise.
+limit at every noise. For smooth fibres at fixed a = A²R/2 the orders are the same.
 """
 
 from __future__ import annotations
@@ -193,6 +193,18 @@ def check_gap(report: Report) -> None:
     report.check("c of Λ(1 + cε²), relative error", worst, "<", 5e-4)
 
 
+def check_smooth(report: Report, workers: int | None) -> None:
+    """Smooth fibres at fixed a = A²R/2: the same orders, with F in the limit."""
+    dataset = fp.studies.large_noise_limit(
+        QUADRATIC, HALVINGS[:3], bending=0.5, parts=["stationary", "rest_uniform"],
+        quick=True, workers=workers,
+    )  # fmt: skip
+    check_orders(report, dataset, "|ξ|²/2, a = 0.5")
+    direction = dataset["distance"].sel(quantity="stationary/direction_p1")
+    report.check("a = 0.5: stationary E τ with p₁, every noise (exact)",
+                 float(direction.max()), "<", 2e-5)  # fmt: skip
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--quick", action="store_true", help="to ε = 1/16, coarser")
@@ -219,6 +231,7 @@ def main() -> None:
     setting = "quick" if quick else "full"
     save_figure(plot_large_noise(dataset), f"large_noise_limit_{setting}.png")
     if not quick:
+        check_smooth(report, arguments.workers)
         quartic = fp.studies.large_noise_limit(
             QUARTIC, HALVINGS[:3],
             parts=["stationary", "belt_directed", "rest_uniform", "gap"], **options,

@@ -27,7 +27,7 @@ _TEXTS = (
 _NUMBERS = (
     "ds", "s_start", "false_alarm", "gap", "gap_error", "essential", "noise", "radius",
     "g_max", "slow_length", "belt_speed_scale", "fixed_speed", "expected_order",
-    "tolerance", "s_end", "belt_speed", "titer", "period",
+    "tolerance", "s_end", "belt_speed", "titer", "period", "bending",
 )  # fmt: skip
 _INTEGERS = (
     "n_paths", "n_steps", "n_cells", "kept", "agrees", "quick", "signed",

@@ -147,7 +147,7 @@ def _of_rates(dataset: xr.Dataset, about: Mapping[str, Any]) -> Held:
 
 def _of_large_noise(dataset: xr.Dataset, about: Mapping[str, Any]) -> Held:
     yield "noises", _values(dataset, "noise")
-    for name in ("slow_length", "belt_speed_scale", "fixed_speed"):
+    for name in ("slow_length", "belt_speed_scale", "fixed_speed", "bending"):
         yield name, about.get(name)
 
 

@@ -9,7 +9,10 @@ import numpy as np
 from fpsolve._support.arrays import Array
 from fpsolve.grids import diagnostics
 from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.model.fibre import FibreModel
 from fpsolve.model.laydown import LayDownModel
+from fpsolve.reduced.hydrodynamic.effective_potential import EffectivePotential
+from fpsolve.reduced.hydrodynamic.persistence import Persistence
 from fpsolve.studies.limits.plane_limit import Approximation
 
 __all__ = ["distances", "second_moment"]
@@ -22,7 +25,7 @@ def distances(
     p: Array,
     approximation: Approximation,
     grid: PhaseSpaceGrid,
-    model: LayDownModel,
+    model: FibreModel,
     layer: Array | None = None,
 ) -> dict[str, float]:
     """L1 norms of densities, absolute differences of numbers.
@@ -30,7 +33,7 @@ def distances(
     - marginal: ‖∫p dα − 𝒫‖₁;
     - joint, joint_p1: ‖p − 𝒫/2π‖₁ and ‖p − 𝒫/2π − εp₁‖₁;
     - mean, second_moment: of E ξ (Euclidean norm) and of E‖ξ‖²;
-    - entropy: of H(p | e^{−B}/2πZ), without p₁;
+    - entropy: of H(p | e^{−B}/2πZ), without p₁; e^{−B/F} for smooth fibres;
     - direction, direction_p1: of E τ, without and with p₁.
 
     Parameters
@@ -38,7 +41,7 @@ def distances(
     p : ndarray, shape ``grid.shape``
     approximation : Approximation
     grid : PhaseSpaceGrid
-    model : LayDownModel
+    model : LayDownModel or SmoothLayDownModel
     layer : ndarray, optional
         Initial layer, added to everything but 𝒫/2π.
     """
@@ -46,7 +49,7 @@ def distances(
     uniform = np.ascontiguousarray(approximation.uniform)
     plane = diagnostics.marginal(corrected, grid, "xi")
     marginal = diagnostics.marginal(p, grid, "xi")
-    reference = model.equilibrium(*grid.plane())
+    reference = _at_rest(model, grid)
     entropies = [diagnostics.relative_entropy(q, grid, reference) for q in (p, uniform)]
     full, reduced = (diagnostics.moments(q, grid) for q in (p, corrected))
     return {
@@ -59,6 +62,15 @@ def distances(
         "direction": math.hypot(full["mean_cos_alpha"], full["mean_sin_alpha"]),
         "direction_p1": _apart(full, reduced, "mean_cos_alpha", "mean_sin_alpha"),
     }
+
+
+def _at_rest(model: FibreModel, grid: PhaseSpaceGrid) -> Array:
+    """e^{−B/F}/2πZ: what is stationary on a belt at rest, in the limit at least."""
+    if isinstance(model, LayDownModel):
+        return model.equilibrium(*grid.plane())
+    factor = Persistence.of(model).factor
+    phi = EffectivePotential(model.potential, 0.0, factor)
+    return phi.density(*grid.plane()) / math.tau
 
 
 def _l1_norm(difference: Array, grid: PhaseSpaceGrid) -> float:

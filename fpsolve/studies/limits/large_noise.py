@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from fpsolve._support.arrays import Array
-from fpsolve._support.checks import check_finite, check_kind, check_positive
+from fpsolve._support.checks import (
+    check_finite,
+    check_kind,
+    check_non_negative,
+    check_positive,
+)
 from fpsolve._support.labels import to_json
 from fpsolve.evolution.call import recorded
 from fpsolve.model.laydown import LayDownModel
@@ -27,47 +32,20 @@ from fpsolve.studies.limits.large_noise_cases import (
     PARTS,
     deviation_of,
     large_noise_case,
-    resolution_for,
 )
 from fpsolve.studies.limits.large_noise_dataset import large_noise_dataset
+from fpsolve.studies.limits.large_noise_settings import options_of, settings_of
 from fpsolve.studies.sweeps.study import swept
 from fpsolve.studies.sweeps.sweep import Case, SweepProgress
 
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["LARGE_NOISE_START", "Settings", "large_noise_limit"]
+__all__ = ["LARGE_NOISE_START", "large_noise_limit", "start_for"]
 
 # Off the centre, narrower than the equilibrium, and in a direction of its own; for
 # e^{−B} of deviation one.
 LARGE_NOISE_START = GaussianLaw((0.8, -0.4), 0.3, 0.6, 2.0)
-# The stationary density keeps the bias of the splitting in ds: half the step.
-_STATIONARY_TURN = 0.5
-
-
-@dataclass(frozen=True)
-class Settings:
-    """How well the full equation is resolved.
-
-    Attributes
-    ----------
-    cell : float
-        Cell width over that of the features, half the deviation of e^{−B}.
-    n_alpha : int
-        Angles.
-    turn : float
-        A² ds.
-    mean : float
-        Tolerance of `spectral_steady_state` at a fixed speed.
-    """
-
-    cell: float = 0.4
-    n_alpha: int = 16
-    turn: float = 0.5
-    mean: float = 1e-8
-
-
-QUICK = Settings(cell=0.5, turn=0.8, mean=1e-6)
 
 
 @recorded()
@@ -78,6 +56,7 @@ def large_noise_limit(
     slow_length: float = 1.25,
     belt_speed_scale: float = 0.5,
     fixed_speed: float = 0.3,
+    bending: float = 0.0,
     p0: GaussianLaw | None = None,
     parts: Iterable[str] | None = None,
     quick: bool = False,
@@ -113,6 +92,10 @@ def large_noise_limit(
         w; 0 leaves the parts with a belt out.
     fixed_speed : float
         Between 0 and 1.
+    bending : float
+        a = A²R/2 of smooth fibres, the same at every noise; 0 for the basic model. The
+        orders are the same, but e^{−B} is not stationary at rest: "stationary" is there
+        without a belt, too, and "fixed_speed" and "gap" are not.
     p0 : GaussianLaw, optional
         Start of the transients, with a concentration; by default mean (0.8, −0.4) d,
         variance 0.3 d², d the smaller deviation of e^{−B}, angle 0.6 with
@@ -148,7 +131,8 @@ def large_noise_limit(
     """
     amplitudes = checked_noises(potential, noises)
     pull = checked_pull(potential, belt_speed_scale, amplitudes)
-    possible = possible_parts(potential, pull)
+    curved = check_non_negative("bending", bending)
+    possible = possible_parts(potential, pull, curved)
     chosen = chosen_parts(parts, possible, "potential and belt")
     law: GaussianLaw = start_for(potential) if p0 is None else p0
     check_law(law)
@@ -158,7 +142,8 @@ def large_noise_limit(
         law,
         check_positive("slow_length", slow_length),
         checked_speed(fixed_speed),
-        QUICK if quick else Settings(),
+        settings_of(quick, curved),
+        curved,
     )
     cases = [
         {"part": part, "potential": potential, "noise": float(noise), **options[part]}
@@ -167,8 +152,8 @@ def large_noise_limit(
     ]
     about = {
         "slow_length": float(slow_length), "belt_speed_scale": pull,
-        "fixed_speed": float(fixed_speed), "p0": to_json(law.to_dict()),
-        "quick": int(quick),
+        "fixed_speed": float(fixed_speed), "bending": curved,
+        "p0": to_json(law.to_dict()), "quick": int(quick),
     }  # fmt: skip
 
     def dataset(found: list[Case]) -> xr.Dataset:
@@ -178,32 +163,6 @@ def large_noise_limit(
         large_noise_case, cases, dataset,
         client=client, workers=workers, directory=directory, progress=progress,
     )  # fmt: skip
-
-
-def options_of(
-    potential: Potential,
-    pull: float,
-    law: GaussianLaw,
-    slow_length: float,
-    speed: float,
-    settings: Settings,
-) -> dict[str, dict[str, Any]]:
-    """Arguments of every part besides potential and noise."""
-    uniform = replace(law, angle=None, concentration=0.0)
-    cells = settings.cell, settings.n_alpha, settings.turn
-    options: dict[str, dict[str, Any]] = {
-        "gap": {}, "fixed_speed": {"speed": speed, "tolerance": settings.mean},
-    }  # fmt: skip
-    for place, w in (("belt", pull), ("rest", 0.0)):
-        resolution = resolution_for(potential, w, law, *cells)
-        shared = {"pull": w, "resolution": resolution}
-        timed = {**shared, "slow_length": slow_length}
-        options[f"{place}_directed"] = {**timed, "law": law}
-        options[f"{place}_uniform"] = {**timed, "law": uniform}
-        if w:
-            finer = replace(resolution, turn=_STATIONARY_TURN * resolution.turn)
-            options["stationary"] = {"pull": w, "resolution": finer}
-    return options
 
 
 def start_for(potential: Potential) -> GaussianLaw:
@@ -262,13 +221,15 @@ def check_law(p0: GaussianLaw) -> None:
         )
 
 
-def possible_parts(potential: Potential, pull: float) -> list[str]:
-    """The parts of a study that potential and belt allow."""
+def possible_parts(potential: Potential, pull: float, bending: float) -> list[str]:
+    """The parts of a study that potential, belt and curvature allow."""
     quadratic = isinstance(potential, QuadraticPotential)
     return [
         part
         for part in PARTS
-        if (pull or part not in ("stationary", "belt_directed", "belt_uniform"))
-        and (quadratic or part != "fixed_speed")
-        and (quadratic or potential.isotropic or part != "gap")
+        if (pull or part not in ("belt_directed", "belt_uniform"))
+        # Without belt and curvature it is that of the limit.
+        and (pull or bending or part != "stationary")
+        and ((quadratic and not bending) or part != "fixed_speed")
+        and (((quadratic or potential.isotropic) and not bending) or part != "gap")
     ]

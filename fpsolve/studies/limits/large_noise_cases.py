@@ -10,16 +10,19 @@ from typing import Any
 from fpsolve._support.arrays import Array
 from fpsolve.density.error_laws import feature_width_of
 from fpsolve.density.schemes import drift_kick
+from fpsolve.density.smooth.marginal import without_curvature
 from fpsolve.density.solve import solve
 from fpsolve.density.steady_state import steady_state
 from fpsolve.grids import diagnostics, initial
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.model.curves.belts import FixedBelt, MovingBelt
 from fpsolve.model.curves.curve import Curve
+from fpsolve.model.fibre import FibreModel
 from fpsolve.model.laydown import LayDownModel
 from fpsolve.model.potentials.nodes import gibbs_nodes
 from fpsolve.model.potentials.potential import Potential
 from fpsolve.model.potentials.quadratic import QuadraticPotential
+from fpsolve.model.smooth import SmoothLayDownModel
 from fpsolve.paths.laws import GaussianLaw
 from fpsolve.reduced.hydrodynamic.limit import HydrodynamicLimit
 from fpsolve.spectral.eigen.gap import spectral_gap
@@ -28,6 +31,7 @@ from fpsolve.studies.constants.poincare import next_gap_term, poincare_constant
 from fpsolve.studies.limits.balance import balanced_force
 from fpsolve.studies.limits.distances import distances
 from fpsolve.studies.limits.plane_limit import stationary_limit, transient_limit
+from fpsolve.studies.limits.smooth_runs import curved_grid, smooth_marginal
 from fpsolve.studies.suggested_grid import box_half_widths
 
 __all__ = ["PARTS", "Resolution", "deviation_of", "large_noise_case", "resolution_for"]
@@ -80,6 +84,7 @@ def resolution_for(
     cell: float,
     n_alpha: int,
     turn: float,
+    factor: float = 1.0,
 ) -> Resolution:
     """A box for e^{−B} moved by the belt and for a start, with cells for its features.
 
@@ -94,9 +99,14 @@ def resolution_for(
         Cell width over that of the features, half the deviation of e^{−B}.
     n_alpha : int
     turn : float
+    factor : float
+        F, by which smooth fibres spread farther.
     """
     half1, half2 = (
-        max(half, abs(mean) + _DEVIATIONS * math.sqrt(law.variance[axis][axis]))
+        max(
+            math.sqrt(factor) * half,
+            abs(mean) + _DEVIATIONS * math.sqrt(law.variance[axis][axis]),
+        )
         for axis, (half, mean) in enumerate(
             zip(_half_widths(potential, pull), law.mean, strict=True)
         )
@@ -136,9 +146,10 @@ def transient_case(
     law: GaussianLaw,
     slow_length: float,
     resolution: Resolution,
+    bending: float = 0.0,
 ) -> Numbers:
     """Distances at s = slow_length/ε from a law, with the start corrected and not."""
-    model = _model(potential, noise, pull)
+    model = _model(potential, noise, pull, bending)
     fine, coarse = (
         _transient(model, law, slow_length * noise**2, one)
         for one in (resolution, resolution.coarser())
@@ -147,15 +158,12 @@ def transient_case(
 
 
 def _transient(
-    model: LayDownModel, law: GaussianLaw, s: float, resolution: Resolution
+    model: FibreModel, law: GaussianLaw, s: float, resolution: Resolution
 ) -> Numbers:
     grid = resolution.grid
     p0 = initial.gaussian(grid, law.mean, law.variance, law.angle, law.concentration)
     n_steps = math.ceil(s / resolution.ds(model.noise))
-    scheme = drift_kick(model, grid, balanced=_falls_like_equilibrium(p0, model, grid))
-    p = solve(
-        scheme, p0, (0.0, s), s / n_steps, extrapolate=True, record_every=n_steps
-    ).final
+    p = _evolved(model, grid, p0, s, n_steps)
     limit = transient_limit(model, grid, law, s, corrected=True)
     if not law.concentration:
         return distances(p, limit, grid, model)
@@ -168,6 +176,18 @@ def _transient(
     }
 
 
+def _evolved(
+    model: Any, grid: PhaseSpaceGrid, p0: Array, s: float, n_steps: int
+) -> Array:
+    """p(ξ, α) at s under the full equation."""
+    if isinstance(model, SmoothLayDownModel):
+        return smooth_marginal(model, grid, p0, s, n_steps)
+    scheme = drift_kick(model, grid, balanced=_falls_like_equilibrium(p0, model, grid))
+    return solve(
+        scheme, p0, (0.0, s), s / n_steps, extrapolate=True, record_every=n_steps
+    ).final
+
+
 def _falls_like_equilibrium(
     p0: Array, model: LayDownModel, grid: PhaseSpaceGrid
 ) -> bool:
@@ -177,28 +197,34 @@ def _falls_like_equilibrium(
 
 
 def stationary_case(
-    potential: Potential, noise: float, pull: float, resolution: Resolution
+    potential: Potential,
+    noise: float,
+    pull: float,
+    resolution: Resolution,
+    bending: float = 0.0,
 ) -> Numbers:
     """Distances of the stationary density on a belt with v = wε."""
-    model = _model(potential, noise, pull)
+    model = _model(potential, noise, pull, bending)
     fine, coarse = (
         _stationary(model, one) for one in (resolution, resolution.coarser())
     )
     return _with_errors(fine, coarse)
 
 
-def _stationary(model: LayDownModel, resolution: Resolution) -> Numbers:
+def _stationary(model: Any, resolution: Resolution) -> Numbers:
+    grid, smooth = resolution.grid, isinstance(model, SmoothLayDownModel)
     found = steady_state(
         # A residual r leaves an error of about r over the gap, which is ~ ε. That of
         # the whole is told by the coarser resolution, distance by distance.
-        model, resolution.grid, ds=resolution.ds(model.noise), extrapolate=True,
+        model, curved_grid(model, grid) if smooth else grid,
+        ds=resolution.ds(model.noise), extrapolate=True,
         tolerance=2e-6 * model.noise**-2, error_tolerance=_ANY_ERROR,
     )  # fmt: skip
-    limit = stationary_limit(model, resolution.grid)
-    numbers = distances(found.density, limit, resolution.grid, model)
+    limit, p = stationary_limit(model, grid), without_curvature(found).density
+    numbers = distances(p, limit, grid, model)
     if isinstance(model.potential, QuadraticPotential):
         balanced = balanced_force(model.belt_speed, model.noise)
-        mean = diagnostics.moments(found.density, resolution.grid)["mean_xi1"]
+        mean = diagnostics.moments(p, grid)["mean_xi1"]
         numbers["mean_balance"] = abs(mean - balanced * model.potential.sigma1**2)
     return numbers
 
@@ -237,9 +263,13 @@ def gap_case(potential: Potential, noise: float) -> Numbers:
     }
 
 
-def _model(potential: Potential, noise: float, pull: float) -> LayDownModel:
-    """The model with v = wε."""
+def _model(
+    potential: Potential, noise: float, pull: float, bending: float
+) -> FibreModel:
+    """The model with v = wε, a smooth one with R = 2aε for a > 0."""
     curve: Curve = MovingBelt(pull * noise**-2) if pull else FixedBelt()
+    if bending:
+        return SmoothLayDownModel(potential, 2 * bending * noise**-2, noise, curve)
     return LayDownModel(potential, noise, curve)
 
 

@@ -12,6 +12,7 @@ from scipy.special import i0e, i1e
 from fpsolve._support.arrays import Array
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.grids.plane import PlaneGrid
+from fpsolve.model.fibre import FibreModel
 from fpsolve.model.laydown import LayDownModel
 from fpsolve.model.potentials.quadratic import QuadraticPotential
 from fpsolve.paths.laws import GaussianLaw
@@ -50,28 +51,28 @@ class Approximation:
         return np.broadcast_to(self.plane[:, :, None] / math.tau, self.joint.shape)
 
 
-def stationary_limit(model: LayDownModel, grid: PhaseSpaceGrid) -> Approximation:
-    """𝒫_S = c exp(−B + v ξ1/ε), which is known, and its p₁."""
+def stationary_limit(model: FibreModel, grid: PhaseSpaceGrid) -> Approximation:
+    """𝒫_S = c exp(−(B − v ξ1/ε)/F), which is known, and its p₁."""
     limit = HydrodynamicLimit(model)
     return _approximation(limit, grid, lambda plane: limit.equilibrium(*plane.mesh()))
 
 
 def transient_limit(
-    model: LayDownModel,
+    model: FibreModel,
     grid: PhaseSpaceGrid,
     law: GaussianLaw,
     s: float,
     *,
     corrected: bool,
 ) -> Approximation:
-    """𝒫(s) from ρ0, or from ρ0 − 2ε∇·J if `corrected`, J = ρ0 Eτ, and its p₁.
+    """𝒫(s) from ρ0, or from ρ0 − 2εF∇·J if `corrected`, J = ρ0 Eτ, and its p₁.
 
     In closed form for quadratic B: 𝒫 of a Gaussian is one, and the displacement by
-    2ε Eτ adds its derivative by the mean of the start. Otherwise by
+    2εF Eτ adds its derivative by the mean of the start. Otherwise by
     `HydrodynamicLimit.solve` on the cells of the grid and on others three times finer.
     """
     limit = HydrodynamicLimit(model)
-    shift = 2 * limit.epsilon * mean_direction(law) if corrected else np.zeros(2)
+    shift = 2 * limit.diffusivity * mean_direction(law) if corrected else np.zeros(2)
     if isinstance(model.potential, QuadraticPotential):
         exact = OrnsteinUhlenbeckLimit(model, law.mean, law.variance)
         return _approximation(

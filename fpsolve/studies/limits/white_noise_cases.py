@@ -11,23 +11,19 @@ import numpy as np
 
 from fpsolve._support.arrays import Array
 from fpsolve.density.schemes import drift_kick
-from fpsolve.density.smooth.smooth_drift_kick import SmoothDriftKick
 from fpsolve.density.solve import solve
 from fpsolve.grids import diagnostics, initial
 from fpsolve.grids.phase_space import PhaseSpaceGrid
-from fpsolve.grids.smooth import SmoothPhaseSpaceGrid
 from fpsolve.model.curves.belts import FixedBelt, MovingBelt
-from fpsolve.model.potentials.nodes import gibbs_nodes
 from fpsolve.model.potentials.potential import Potential
 from fpsolve.model.smooth import SmoothLayDownModel
 from fpsolve.paths.laws import GaussianLaw
 from fpsolve.studies.limits.coupled_paths import coupled_distances
 from fpsolve.studies.limits.distances import second_moment
+from fpsolve.studies.limits.smooth_runs import smooth_marginal
 
 __all__ = ["PARTS", "WhiteNoiseResolution", "white_noise_case"]
 
-# Half width of the curvature in its deviations, and cells in κ over √(A²/2R).
-_DEVIATIONS, _CELL = 5.5, 0.65
 # The comparison has fewer cells by a sixth and steps longer by a half.
 _FEWER, _LONGER = 5 / 6, 1.5
 # Steps for every relaxation length of the coupled paths, and of their comparison.
@@ -90,29 +86,14 @@ def _densities(
     s_end: float,
     resolution: WhiteNoiseResolution,
 ) -> Numbers:
-    grid = curved_grid(model, resolution.grid)
-    plain = grid.phase_space
-    p0 = initial.gaussian(plain, law.mean, law.variance, law.angle, law.concentration)
+    grid = resolution.grid
+    p0 = initial.gaussian(grid, law.mean, law.variance, law.angle, law.concentration)
     n_steps = math.ceil(s_end / resolution.ds)
-    run: dict[str, Any] = {"extrapolate": True, "record_every": n_steps}
-    span, ds = (0.0, s_end), s_end / n_steps
-    basic = drift_kick(model.white_noise_limit, plain)
-    limit = solve(basic, p0, span, ds, **run).final
-    start = initial.with_curvature(p0, grid, model.curvature_variance)
-    smooth: Any = SmoothDriftKick(model, grid)
-    found = solve(smooth, start, span, ds, **run).final
-    return _apart(diagnostics.marginal(found, grid, "xi_alpha"), limit, plain)
-
-
-def curved_grid(
-    model: SmoothLayDownModel, grid: PhaseSpaceGrid
-) -> SmoothPhaseSpaceGrid:
-    """A grid with the curvatures of the noise and of the mean square of the force."""
-    force = sum(gibbs_nodes(model.potential).mean_square_forces()) / 2
-    deviation = math.sqrt(model.curvature_variance)
-    half_width = _DEVIATIONS * math.hypot(deviation, math.sqrt(force))
-    n_kappa = 2 * math.ceil(half_width / (_CELL * deviation))
-    return SmoothPhaseSpaceGrid(grid.half_width, half_width, (*grid.shape, n_kappa))
+    limit = solve(
+        drift_kick(model.white_noise_limit, grid), p0, (0.0, s_end), s_end / n_steps,
+        extrapolate=True, record_every=n_steps,
+    ).final  # fmt: skip
+    return _apart(smooth_marginal(model, grid, p0, s_end, n_steps), limit, grid)
 
 
 def _apart(p: Array, limit: Array, grid: PhaseSpaceGrid) -> Numbers:
