@@ -69,28 +69,6 @@ CAPTIONS = {
         "of c exp(-B). Below: E ξ and E τ over the period.",
         "Maps of the density at four phases and curves of its means",
     ),
-    "web/light": (
-        "The web against light: the more fibre, the darker. The machine direction runs "
-        "to the right.",
-        "Grey image of the fibres of the web",
-    ),
-    "web/mass": (
-        "Mass per area, or laid length per area where there are no units.",
-        "Map of the mass of the web",
-    ),
-    "web/variation": (
-        "Coefficient of variation of the mass of square zones over their side, with "
-        "standard errors from independent blocks, beside that of straight fibres.",
-        "Curve of the coefficient of variation over the side of zones",
-    ),
-    "web/directions": (
-        "How much fibre lies in which direction; the machine direction to the right.",
-        "Rose of the directions of the fibres",
-    ),
-    "web/spectrum": (
-        "Power spectrum of the mass per area: map, and sections along and across.",
-        "Map and curves of the power spectrum of the web",
-    ),
     "spectral/series": (
         "Relative entropy and means over s, with estimated errors.",
         "Curves of entropy and means",
@@ -156,5 +134,29 @@ CAPTIONS = {
         "Error of one average against s, and the limits of s times squared error "
         "against the noise.",
         "Curves of errors against arclength and of variances against noise",
+    ),
+    "web/light": (
+        "The web against light; the mean lets 55 % of it pass.",
+        "Fibres of the web in grey, denser places darker",
+    ),
+    "web/mass": (
+        "Mass per area of every pixel, or laid length per area where no titer is known; "
+        "the densest one pixel in two hundred shares one colour.",
+        "Map of the mass per area",
+    ),
+    "web/variation": (
+        "Coefficient of variation of square zones with standard errors; dashed: random "
+        "straight fibres of the same length per area.",
+        "Coefficient of variation against the side of zones, logarithmic",
+    ),
+    "web/rose": (
+        "Density of laid length over directions, with standard errors; the machine "
+        "direction points to the right.",
+        "Polar bars of the length in each direction",
+    ),
+    "web/spectrum": (
+        "Power spectrum over the mean density: all wave vectors, mean over rings with "
+        "standard errors, and sections in machine and cross direction.",
+        "Map of the power over wave vectors, and curves against the wave number",
     ),
 }

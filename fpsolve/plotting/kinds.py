@@ -41,8 +41,9 @@ from fpsolve.plotting.small_noise import plot_small_noise, plot_small_noise_spec
 from fpsolve.plotting.spectrum import plot_spectrum
 from fpsolve.plotting.stationary import plot_steady_state
 from fpsolve.plotting.trajectories import plot_trajectories
-from fpsolve.plotting.web_quality import plot_rose, plot_variation
-from fpsolve.plotting.web_spectrum import plot_web_spectrum
+from fpsolve.plotting.web_image import holds_fibre
+from fpsolve.plotting.web_quality import holds_zones, plot_rose, plot_variation
+from fpsolve.plotting.web_spectrum import holds_blocks, plot_web_spectrum
 from fpsolve.plotting.webs import plot_mass, plot_web
 from fpsolve.reduced.energy.process import EnergyProcess
 
@@ -99,11 +100,6 @@ def replayed(paths: Paths) -> bool:
     return paths.model is not None and (paths.kept or paths.initial is not None)
 
 
-def wide(web: Any) -> bool:
-    """Where a web has pixels enough for blocks that are independent."""
-    return bool(min(web.length_density.shape) >= FEWEST_PIXELS)
-
-
 def of_energy_tables(dataset: xr.Dataset) -> Figures:
     """Of the energy process orbits, coefficients and modes."""
     potential = potential_of(dataset)
@@ -151,11 +147,11 @@ FIGURES: dict[str, Callable[[Any], Figures]] = {
     "energy-paths": each(energies=(plot_energy_paths, always)),
     "hydrodynamic-paths": each(moments=(plot_hydrodynamic_paths, always)),
     "web": each(
-        light=(plot_web, always),
-        mass=(plot_mass, always),
-        variation=(plot_variation, wide),
-        directions=(plot_rose, wide),
-        spectrum=(plot_web_spectrum, wide),
+        light=(plot_web, holds_fibre),
+        mass=(plot_mass, holds_fibre),
+        variation=(plot_variation, holds_zones),
+        rose=(plot_rose, holds_fibre),
+        spectrum=(plot_web_spectrum, holds_blocks),
     ),
     "check": each(check=(plot_cross_check, always)),
     # Beside the model that they are of.

@@ -9,8 +9,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fpsolve._support.arrays import Array
-from fpsolve._support.checks import check_positive
+from fpsolve._support.checks import check_kind, check_positive
+from fpsolve.plotting.style import parameters
 from fpsolve.web.statistics.fields import check_density, check_orientation
+from fpsolve.web.web import Web
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -20,6 +22,7 @@ __all__ = [
     "add_scale_bar",
     "checked_opacity",
     "draw_light",
+    "holds_fibre",
     "image_of",
     "round_length",
 ]
@@ -91,14 +94,24 @@ def image_of(web: Any) -> WebImage:
     """Return what figures show of a web; TypeError if it is none."""
     if isinstance(web, WebImage):
         return web
-    if not hasattr(web, "length_density") or not hasattr(web, "pixel"):
-        raise TypeError(
-            f"`web` must be what `lay_web` returns, got {type(web).__name__}."
-        )
+    check_kind("web", web, Web, "it is what `lay_web` returns")
     return WebImage(
-        web.length_density, web.pixel, getattr(web, "unit", ""),
-        getattr(web, "mass_density", None), getattr(web, "orientation", None),
+        web.length_density, web.pixel, web.unit, web.mass_density, web.orientation,
+        _title(web),
     )  # fmt: skip
+
+
+def holds_fibre(web: Web) -> bool:
+    """Whether there is anything to see."""
+    return bool(web.length_density.max() > 0)
+
+
+def _title(web: Web) -> str:
+    """Return the parameters, the spacing, and the base weight if it is known."""
+    spacing = f"$d = {web.spacing:g}$" + (f" {web.unit}" if web.unit else "")
+    if web.base_weight is not None:
+        spacing += f",  {web.base_weight:.3g} g/m²"
+    return f"{parameters(web)},  {spacing}"
 
 
 def checked_opacity(opacity: float | None, image: WebImage) -> float:

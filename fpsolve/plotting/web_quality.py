@@ -8,7 +8,7 @@ import numpy as np
 
 from fpsolve._support.arrays import Array, check_finite_numbers
 from fpsolve.plotting.style import COLOURS, COLUMN, drawing
-from fpsolve.plotting.web_image import WebImage, image_of, round_length
+from fpsolve.plotting.web_image import WebImage, holds_fibre, image_of, round_length
 from fpsolve.web.statistics.estimate import Estimates
 from fpsolve.web.statistics.formation import STRAIGHT_FIBRES
 from fpsolve.web.statistics.orientation import orientation_rose
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-__all__ = ["plot_rose", "plot_variation", "zones_for"]
+__all__ = ["holds_zones", "plot_rose", "plot_variation", "zones_for"]
 
 # Zones across the shorter side of a web, at least, for a curve with errors.
 _FEWEST_ZONES = 4
@@ -112,6 +112,11 @@ def plot_rose(web: Any, *, n_bins: int = 36) -> Figure:
         axes.grid(linewidth=0.4)
         figure.legend(loc="outside lower center")
     return figure
+
+
+def holds_zones(web: Any) -> bool:
+    """Whether two pixels lie in a web, of which there is a variation."""
+    return web.length_density.size >= 2 and holds_fibre(web)
 
 
 def zones_for(image: WebImage) -> Array:

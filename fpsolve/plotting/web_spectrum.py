@@ -13,7 +13,7 @@ from fpsolve.plotting.style import (
     drawing,
     show_frame,
 )
-from fpsolve.plotting.web_image import WebImage, image_of
+from fpsolve.plotting.web_image import WebImage, holds_fibre, image_of
 from fpsolve.web.statistics.estimate import Estimates
 from fpsolve.web.statistics.spectrum import PowerSpectrum, power_spectrum
 
@@ -21,8 +21,10 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-__all__ = ["plot_web_spectrum"]
+__all__ = ["holds_blocks", "plot_web_spectrum"]
 
+# Pixels of a side, of which four blocks of eight fit both ways.
+_FEWEST = 32
 # Powers of ten below the peak that the map shows.
 _DECADES = 3.0
 
@@ -51,6 +53,11 @@ def plot_web_spectrum(web: Any, *, block: float | None = None) -> Figure:
         _draw_map(left, found, image)
         _draw_sections(right, found, image)
     return figure
+
+
+def holds_blocks(web: Any) -> bool:
+    """Whether a web is large enough for a spectrum with errors."""
+    return min(web.length_density.shape) >= _FEWEST and holds_fibre(web)
 
 
 def _draw_map(axes: Axes, found: PowerSpectrum, image: WebImage) -> None:

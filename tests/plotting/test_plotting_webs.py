@@ -159,7 +159,5 @@ def test_what_cannot_be_drawn_is_refused(web, call, message):
 def test_what_is_no_web_has_no_figures():
     for plot in (plotting.plot_web, plotting.plot_mass, plotting.plot_variation,
                  plotting.plot_rose, plotting.plot_web_spectrum):  # fmt: skip
-        with pytest.raises(
-            TypeError, match="`web` must be what `lay_web` returns, got"
-        ):
+        with pytest.raises(TypeError, match="`web` must be a Web, got 3"):
             plot(3.0)

@@ -14,10 +14,17 @@ from fpsolve.web.statistics.zones import coefficient_of_variation, mean_density
 class Woven(Measured):
     def __init__(self, shape):
         generator = np.random.default_rng(1)
-        self.length_density, self.pixel = generator.gamma(2.0, size=shape), 0.5
+        self.length_density = generator.gamma(2.0, size=shape)
         angle = generator.uniform(-1, 1, shape)
-        direction = np.stack((np.cos(angle), np.sin(angle)), axis=-1)
-        self.orientation = direction[..., :, None] * direction[..., None, :]
+        self.direction = np.stack((np.cos(angle), np.sin(angle)), axis=-1)
+
+    @property
+    def pixel(self):
+        return 0.5
+
+    @property
+    def orientation(self):
+        return self.direction[..., :, None] * self.direction[..., None, :]
 
 
 def test_the_methods_of_a_web_are_the_functions_of_its_density():

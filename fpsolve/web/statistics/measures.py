@@ -27,9 +27,17 @@ class Measured:
     independent blocks of the web.
     """
 
-    length_density: Any
-    pixel: float
-    orientation: Any
+    length_density: Array
+
+    @property
+    def pixel(self) -> float:
+        """Side of a pixel."""
+        raise NotImplementedError
+
+    @property
+    def orientation(self) -> Array:
+        """⟨τ⊗τ⟩ of every pixel."""
+        raise NotImplementedError
 
     def mean_length_density(self, *, block: float | None = None) -> Estimate:
         """⟨m⟩, mean laid length per area; 1/(v d) is expected.
