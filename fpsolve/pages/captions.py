@@ -65,8 +65,8 @@ CAPTIONS = {
         "Map of the stationary density and curve over the angle",
     ),
     "periodic-state/phases": (
-        "Left: the density over the plane at four phases of the period; white: contours "
-        "of c exp(-B). Below: E ξ and E τ over the period.",
+        "The density over the plane at four phases of the period; white: contours of "
+        "c exp(-B). Below: E ξ and E τ over the period.",
         "Maps of the density at four phases and curves of its means",
     ),
     "spectral/series": (
@@ -140,8 +140,8 @@ CAPTIONS = {
         "Fibres of the web in grey, denser places darker",
     ),
     "web/mass": (
-        "Mass per area of every pixel, or laid length per area where no titer is known; "
-        "the densest one pixel in two hundred shares one colour.",
+        "Mass per area of every pixel, or laid length per area without a titer; the "
+        "densest one pixel in two hundred shares one colour.",
         "Map of the mass per area",
     ),
     "web/variation": (

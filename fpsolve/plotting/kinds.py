@@ -58,8 +58,6 @@ __all__ = ["FIGURES"]
 
 # One has no curve, and nothing is fitted to it.
 FEWEST_NOISES = 2
-# Along either side of a web.
-FEWEST_PIXELS = 64
 
 
 def each(**figures: tuple[Plot, Callable[[Any], bool]]) -> Callable[[Any], Figures]:
