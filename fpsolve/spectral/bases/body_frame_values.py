@@ -3,20 +3,39 @@
 from __future__ import annotations
 
 import math
+from typing import Protocol
 
 import numpy as np
 from scipy.special import gammaln
 
 from fpsolve._support.arrays import Array, Complex
-from fpsolve.grids.smooth import SmoothPhaseSpaceGrid
 from fpsolve.spectral.bases.hermite_functions import hermite_polynomials
 from fpsolve.spectral.bases.sectors import Vector
 from fpsolve.spectral.bases.weights import Weight
 
-__all__ = ["values_on"]
+__all__ = ["Cells", "values_on"]
 
 # Complex numbers in memory at a time.
 CHUNK = 2**21
+
+
+class Cells(Protocol):
+    """Centres of the cells of a grid, whatever the units of its plane."""
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Numbers of cells."""
+
+    @property
+    def alpha(self) -> Array:
+        """Angles."""
+
+    @property
+    def kappa(self) -> Array:
+        """Curvatures."""
+
+    def plane(self) -> tuple[Array, Array]:
+        """Positions, shapes (n1, 1) and (1, n2)."""
 
 
 def values_on(
@@ -24,7 +43,7 @@ def values_on(
     index: int,
     position: Weight,
     curvature: Weight,
-    grid: SmoothPhaseSpaceGrid,
+    grid: Cells,
 ) -> Complex:
     """Σ table[n_a, n_b, j] of functions e^{ilφ + i(M-l)α} iʲ times the weights.
 
@@ -35,7 +54,8 @@ def values_on(
         M.
     position, curvature : Weight
         Their exponents are those of the Gaussians exp(-‖ξ‖²/(2S²)) and exp(-κ²/(2g²)).
-    grid : SmoothPhaseSpaceGrid
+    grid : Cells
+        As a SmoothPhaseSpaceGrid.
 
     Returns
     -------
