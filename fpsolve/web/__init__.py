@@ -1,1 +1,1 @@
-"""Webs of many fibres: laid, measured and described."""
+"""Webs: what the fibres of many spinning positions become on the belt."""

@@ -1,0 +1,1 @@
+"""The resolvent of the generator: spectra of what a fibre lays down."""

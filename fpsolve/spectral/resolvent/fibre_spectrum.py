@@ -1,0 +1,109 @@
+"""Ŝ(k) of one fibre at many wave vectors, to a tolerance."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fpsolve._support.arrays import Array
+from fpsolve.spectral.resolvent.basis import Basis
+from fpsolve.spectral.resolvent.generator import Generator
+from fpsolve.spectral.resolvent.ladder import Ladder
+from fpsolve.spectral.resolvent.limit import short_wave_limit
+from fpsolve.spectral.resolvent.waves import along_long_waves, along_short_waves
+
+__all__ = ["fibre_spectrum"]
+
+# |k| σ up to which one factorisation per k1 serves every k2: e^{ik·ξ} needs polynomials
+# up to the degree |k σ|² and some more.
+LONG = 3.0
+# |k| σ, or in units of A²/2, beyond which the law of the angle decides, with a
+# correction that is measured there. Before it falls like |k|⁻², it has parts that fall
+# like e^{−c √(2|k|/A²)}, and oscillate.
+FAR, FAR_OF_NOISE = 300.0, 40.0
+# Degrees count more than harmonics. Of both parities each has half of the states.
+FIRST_LONG, MOST_STATES = Basis(14, 7), 40_000
+# The first truncation for short waves: its degree, its harmonics, and how they grow
+# with |k|, in units of 1/σ or of A²/2: the width of what is left of the angle is about
+# |k|^(−1/2).
+DEGREE, HARMONICS, PER_ROOT = 8, 5, 1.5
+
+
+def fibre_spectrum(
+    ladder: Ladder, k1: Array, k2: Array, tolerance: float
+) -> tuple[Array, Array]:
+    """Ŝ at (k1[i], k2[i]) and bounds of the errors.
+
+    Ŝ is even in k, and in k2 by reflection: computed once for what differs. The error
+    is at most `tolerance` times the larger of Ŝ and σ/(1 + |k| σ), σ the smaller
+    throwing range.
+    """
+    points = np.stack([np.abs(k1), np.abs(k2)], axis=1)
+    distinct, inverse = np.unique(points, axis=0, return_inverse=True)
+    values, errors = np.zeros(len(distinct)), np.zeros(len(distinct))
+    sigma1, sigma2 = ladder.scales
+    long = np.hypot(distinct[:, 0] * sigma1, distinct[:, 1] * sigma2) <= LONG
+    for one in np.unique(distinct[long, 0]):
+        found = np.flatnonzero(long & (distinct[:, 0] == one))
+        group = long_waves(ladder, float(one), distinct[found, 1], tolerance)
+        values[found], errors[found] = group
+    level = 0
+    # From long to short, since what was fine enough for one is for the next.
+    others = np.flatnonzero(~long)
+    for place in others[np.argsort(np.hypot(*distinct[others].T), kind="stable")]:
+        wave = float(distinct[place, 0]), float(distinct[place, 1])
+        values[place], errors[place], level = short_wave(
+            ladder, wave, tolerance, max(level - 1, 0)
+        )
+    inverse = inverse.reshape(-1)
+    return values[inverse], errors[inverse]
+
+
+def floor_of(ladder: Ladder, k: Array) -> Array:
+    """σ/(1 + |k| σ): of the size of Ŝ at rest, and never zero."""
+    sigma = min(ladder.scales)
+    return np.asarray(sigma / (1.0 + k * sigma))
+
+
+def long_waves(
+    ladder: Ladder, k1: float, k2: Array, tolerance: float
+) -> tuple[Array, Array]:
+    """Ŝ at one k1 and many k2, all of one truncation."""
+    floor = floor_of(ladder, np.hypot(k1, k2))
+    values, errors, _ = ladder.climb(
+        FIRST_LONG,
+        lambda generator: along_long_waves(generator, k1, k2.tolist()),
+        lambda found: tolerance * np.maximum(np.abs(found), floor),
+        most=MOST_STATES,
+    )
+    return values, errors
+
+
+def short_wave(
+    ladder: Ladder, k: tuple[float, float], tolerance: float, level: int = 0
+) -> tuple[float, float, int]:
+    """Ŝ at one k; beyond `FAR` by the law of the angle and what it lacks there."""
+    sigma1, sigma2 = ladder.scales
+    spread = max(1.0, ladder.model.diffusivity * max(sigma1, sigma2))
+    far = max(FAR, FAR_OF_NOISE * spread)
+    ratio = max(1.0, np.hypot(k[0] * sigma1, k[1] * sigma2) / far)
+    nearer = k[0] / ratio, k[1] / ratio
+    size = np.hypot(*nearer)
+    first = Basis(
+        DEGREE,
+        round(HARMONICS + PER_ROOT * np.sqrt(size * max(sigma1, sigma2) / spread)),
+    )
+    floor = floor_of(ladder, size)
+
+    def both(generator: Generator) -> Array:
+        law = short_wave_limit(generator, nearer)
+        return np.array([along_short_waves(generator, nearer), law])
+
+    values, errors, level = ladder.climb(
+        first, both, lambda found: tolerance * np.maximum(np.abs(found), floor), level
+    )
+    if ratio == 1:
+        return float(values[0]), float(errors[0]), level
+    # Ŝ |k| = law |k| + correction/|k|² + …
+    correction = float(values[0] - values[1]) / ratio**2
+    value = float(values[1] + correction) / ratio
+    return value, float(errors.max() + 2 * abs(correction)) / ratio, level

@@ -1,0 +1,119 @@
+"""Truncations of growing size, until two in a row agree."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from fpsolve._support.arrays import Array
+from fpsolve.errors import ToleranceError
+from fpsolve.model.laydown import LayDownModel
+from fpsolve.spectral.evolution.quadratic import quadratic
+from fpsolve.spectral.resolvent.basis import Basis
+from fpsolve.spectral.resolvent.centre import centre_of
+from fpsolve.spectral.resolvent.generator import Generator
+
+__all__ = ["Ladder"]
+
+# From one truncation to the next; degrees are what lacks.
+DEGREES, HARMONICS = 1.4, 1.25
+Allowed = Callable[[Array], Array]
+# The factors of more states take gigabytes and minutes.
+MOST_STATES = 24_000
+# What rounding leaves of the numbers, relative to the largest.
+ROUNDING = 1e-11
+# Of a change, and of the change before: at low noise the numbers do not converge
+# monotonically. Measured by validation/web_prediction.py.
+SAFETY, MEMORY = 2.0, 0.5
+
+
+@dataclass(eq=False)
+class Ladder:
+    """Generators of a model in bases of growing size, kept for the next wave vector.
+
+    Attributes
+    ----------
+    model : LayDownModel
+    centre : float
+        Of all bases.
+    """
+
+    model: LayDownModel
+    centre: float = field(init=False)
+    _kept: dict[Basis, Generator] = field(default_factory=dict, init=False)
+
+    def __post_init__(self) -> None:
+        self.centre = centre_of(self.model)
+
+    @property
+    def scales(self) -> tuple[float, float]:
+        """The throwing ranges."""
+        potential = quadratic(self.model)
+        return potential.sigma1, potential.sigma2
+
+    def generator(self, basis: Basis) -> Generator:
+        """The generator in a basis."""
+        if basis not in self._kept:
+            self._kept[basis] = Generator(self.model, basis, self.centre)
+        return self._kept[basis]
+
+    def climb(
+        self,
+        first: Basis,
+        compute: Callable[[Generator], Array],
+        allowed: Allowed,
+        level: int = 0,
+        most: int = MOST_STATES,
+    ) -> tuple[Array, Array, int]:
+        """What `compute` returns, bounds of its errors, and the level.
+
+        The change from the truncation before shrinks at least geometrically with the
+        size, so that it bounds the error of the larger truncation. At low noise one
+        number may agree by chance: in units of what is allowed, the error of each is
+        twice the largest of all changes, and at least half of that of the step before.
+
+        Parameters
+        ----------
+        first : Basis
+            Of level 0.
+        compute : callable
+            Of a generator.
+        allowed : callable
+            Of what was computed, the largest errors.
+        level : int
+            To begin at.
+        most : int
+            States of the largest truncation.
+
+        Raises
+        ------
+        ToleranceError
+            If even the largest truncation is not fine enough.
+        """
+        coarse = compute(self.generator(grown(first, level)))
+        reached, tolerance, before = np.inf, np.nan, 0.0
+        while grown(first, level + 1).size <= most:
+            level += 1
+            fine = compute(self.generator(grown(first, level)))
+            limit = allowed(fine)
+            change = float(np.max(np.abs(fine - coarse) / limit))
+            error = limit * max(SAFETY * change, MEMORY * before)
+            error = error + ROUNDING * np.abs(fine)
+            if (error <= limit).all():
+                return fine, error, level
+            reached, tolerance = float(error.max()), float(limit[error.argmax()])
+            coarse, before = fine, change
+        remedy = (
+            f"raise `tolerance`: at noise {self.model.noise:g} no truncation of "
+            f"{most} states is fine enough"
+        )
+        raise ToleranceError(reached, tolerance, remedy)
+
+
+def grown(first: Basis, level: int) -> Basis:
+    """The basis that is `level` steps larger."""
+    return Basis(
+        round(first.degree * DEGREES**level), round(first.harmonics * HARMONICS**level)
+    )
