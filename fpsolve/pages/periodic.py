@@ -40,8 +40,9 @@ def section(result: PeriodicState, source: str) -> Section:
         mathml("p(s + P) = p(s)", "p(s + P) = p(s)"),
         Paragraph(_PERIODIC),
     ]
+    tone = "good" if result.error <= _SMALL else "warning"
     return Section("Time-periodic density", source, [
-        Part("Summary", [Notice(said, "good" if result.error <= _SMALL else "warning")]),
+        Part("Summary", [Notice(said, tone)]),
         Part("Equation", equation),
         Part("Parameters", [Facts(items)]),
         Part("Moments", [_moments(result)]),

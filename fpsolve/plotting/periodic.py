@@ -45,7 +45,9 @@ def plot_periodic_state(result: PeriodicState) -> Figure:
             (position, r"$E\,\xi_{}$", ("mean_xi1", "mean_xi2")),
             (direction, r"$E\,\tau_{}$", ("mean_cos_alpha", "mean_sin_alpha")),
         ):
-            for k, (name, colour) in enumerate(zip(names, COLOURS.values())):
+            for k, (name, colour) in enumerate(
+                zip(names, COLOURS.values(), strict=False)
+            ):
                 label = words.replace("{}", str(k + 1))
                 axes.plot(result.s, moments[name], color=colour, label=label)
             axes.set(xlabel=r"$s$", xlim=(0.0, result.period))

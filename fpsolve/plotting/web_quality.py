@@ -62,8 +62,9 @@ def plot_variation(
         # Where an error is not known there is a point without a bar.
         errors = np.nan_to_num(found.standard_errors)
         axes.errorbar(
-            factor * found.coordinate, found.values, errors, linestyle="none", marker="o", markersize=4, color=COLOURS["blue"],
-            capsize=2, label="this web",
+            factor * found.coordinate, found.values, errors, linestyle="none",
+            marker="o", markersize=4, color=COLOURS["blue"], capsize=2,
+            label="this web",
         )  # fmt: skip
         axes.set(xscale="log", yscale="log", ylabel="coefficient of variation")
         axes.set_xlabel(image.label("side of the zones").replace(" direction", ""))

@@ -50,8 +50,8 @@ def stream_web(
 
     While fibres are laid their counts lie in a file beside the store, 48 bytes for a
     pixel, of which the system keeps in memory what is being laid: the stretch of the
-    belt below the nozzles. Where the titer is known, the mass per area takes eight bytes of
-    memory for a pixel. One thread counts, the steps are taken by all.
+    belt below the nozzles. Where the titer is known, the mass per area takes eight
+    bytes of memory for a pixel. One thread counts, the steps are taken by all.
 
     Parameters
     ----------

@@ -99,7 +99,7 @@ class Web(Saved, Measured):
         return self.plan.window.length * self.unit_length
 
     @property
-    def pixel(self) -> float:  # type: ignore[override]
+    def pixel(self) -> float:
         """Side of a pixel."""
         return self.plan.window.pixel * self.unit_length
 

@@ -1,4 +1,4 @@
-"""Densities that come back every period: identities, limits, paths, errors, refusals."""
+"""Densities that come back every period: identities, limits, errors, refusals."""
 
 import math
 import warnings

@@ -1,4 +1,4 @@
-"""Pages of the gallery are complete; building them (.ci/docs --gallery) runs their scripts."""
+"""Pages of the gallery are complete; `.ci/docs --gallery` runs their scripts."""
 
 import importlib
 from pathlib import Path

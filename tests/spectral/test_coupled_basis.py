@@ -91,7 +91,7 @@ def test_on_a_belt_at_rest_even_and_odd_indices_part():
 
 
 def test_a_round_potential_at_rest_has_uncoupled_indices():
-    """Blocks on the diagonal are the sectors of the isotropic basis, and all there is."""
+    """Diagonal blocks are the sectors of the isotropic basis, and all there is."""
     model = fp.SmoothLayDownModel(fp.QuadraticPotential(0.8, 0.8), 0.3, 1.5)
     plain, coupled = (
         BodyFrameDiscretisation(model),
