@@ -302,8 +302,8 @@ def test_every_figure_is_reached_from_the_package(name):
 
 
 def test_unknown_figures_are_attribute_errors():
-    with pytest.raises(AttributeError, match=r"has no attribute 'plot_web'"):
-        plotting.plot_web  # noqa: B018
+    with pytest.raises(AttributeError, match=r"has no attribute 'plot_knot'"):
+        plotting.plot_knot  # noqa: B018
 
 
 def test_figures_of_smooth_fibres_name_both_lengths_and_draw_no_equilibrium():
