@@ -105,7 +105,13 @@ def test_what_does_not_fit_costs_a_line_and_leaves_no_file(
     assert not (tmp_path / "out").exists() or files(tmp_path / "out") == []
 
 
-def test_a_grid_of_a_smooth_fibre_has_to_be_given(run):
+def test_a_smooth_run_without_a_grid_gets_one_that_is_kept(run, tmp_path):
     start, rest = CONFIG.split("[grid]")
-    answer = run(start + rest[rest.index("[initial]") :])
-    assert_mistake(answer, "section [grid]: `half_width`, `shape`, `kappa_half_width`")
+    text = start + rest[rest.index("[initial]") :]
+    answer = run(text.replace("s_end = 0.5", "s_end = 0.25\ntolerance = 0.5"))
+    assert answer.exit_code == 0, answer.output
+    grid = fp.load(tmp_path / "out/smooth.nc").grid
+    assert isinstance(grid, fp.SmoothPhaseSpaceGrid)
+    assert "are 6 times" in answer.output
+    written = load_config(tmp_path / "out/smooth.toml", RunConfig)
+    assert written.grid.make() == grid

@@ -96,11 +96,6 @@ class RunConfig(Description):
     def _grid(self, model: Any) -> Any:
         if self.grid is not None:
             return self.grid.make()
-        if isinstance(model, SmoothLayDownModel):
-            raise ValueError(
-                "`half_width`, `shape`, `kappa_half_width` and `n_kappa` must be given "
-                "for a model with a relaxation length, got none; nothing suggests them."
-            )
         return suggest_grid(
             model, self.run.tolerance, initial=self._law(), s_end=self.run.s_end
         )
