@@ -43,10 +43,11 @@ def lengths_of(model: FibreModel) -> Lengths:
         swing = 0.0
     smooth = isinstance(model, SmoothLayDownModel)
     length: float = getattr(model, "relaxation_length", 0.0) if smooth else 0.0
+    # A smooth fibre also forgets its curvature, over R.
+    relaxation = relaxation_length(model.noise, max(deviations)) + length
     return Lengths(
-        # A smooth fibre also forgets its curvature, over R.
-        relaxation=relaxation_length(model.noise, max(deviations)) + length,
-        step=longest_step(model.noise, finest, swing, length),
+        relaxation=rounded(relaxation),
+        step=rounded(longest_step(model.noise, finest, swing, length)),
         period=2 * math.pi / swing if swing else 0.0,
     )
 
@@ -84,3 +85,11 @@ def longest_step(noise: float, finest: float, swing: float, smooth: float) -> fl
     if swing > 0:
         steps.append(0.2 / swing)
     return min(steps)
+
+
+def rounded(length: float) -> float:
+    """To three digits: sums of quadratures are rounded otherwise on another machine.
+
+    A step that differs in its last digit makes another web.
+    """
+    return float(f"{length:.3g}")

@@ -87,10 +87,10 @@ class Motion:
         for j in range(len(own)):
             # What a nozzle moves otherwise than the curve says is added to both halves
             # of the step, before and behind the force.
-            state[:2] -= own[j, 0] @ weights
+            state[:2] -= combined(own[j, 0], weights)
             here = None if trace is None else trace[j : j + 1]
             self.integrator.advance(state, path, step + j, 1, here)
-            state[:2] -= own[j, 1] @ weights
+            state[:2] -= combined(own[j, 1], weights)
             if trace is not None:
                 trace[j, :2] = state[:2]
 
@@ -110,7 +110,7 @@ class Motion:
         """ξ + γ of fibres after so many steps, each with the phase of its nozzle."""
         row = self.curve(step - 1, 1)[0]
         weights = self.weights[:, first : first + state.shape[1]]
-        moved: Array = row[2:].reshape(2, 2).T @ weights
+        moved = combined(row[2:].reshape(2, 2).T, weights)
         return np.asarray(state[:2] + row[:2, None] + moved)
 
     def _own_shifts(self, step: int, n_steps: int) -> Array:
@@ -121,3 +121,9 @@ class Motion:
             for part in nozzle_parts(curve)
         ]
         return np.stack(parts, axis=-1)
+
+
+def combined(parts: Array, weights: Array) -> Array:
+    """The product (2, 2) @ (2, n), rounded alike for any number of threads of BLAS."""
+    first, second = parts.T[:, :, None]
+    return np.asarray(first * weights[0] + second * weights[1])
