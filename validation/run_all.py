@@ -35,6 +35,7 @@ SCRIPTS = (
     "performance/paths.py",
     "performance/reduced.py",
     "performance/smooth_density.py",
+    "performance/webs.py",
 )
 # For every night: kills by the dozen, times that a shared machine only blurs, and
 # claims that tests hold as well, on other models, shorter arclengths or fewer paths.
@@ -58,6 +59,7 @@ NIGHTLY = {
     "performance/paths.py": "",
     "performance/reduced.py": "",
     "performance/smooth_density.py": "",
+    "performance/webs.py": "",
 }
 
 
