@@ -1,8 +1,8 @@
 """Boxes that hold the law of (ξ, α), checked on the law itself.
 
 At rest the law is e^{-B}/Z, whose mass outside a box is summed. Where the belt or the
-nozzle moves, or a run starts elsewhere, the law is not known and paths are sampled:
-one ensemble tells how far they get, a second one checks the box.
+nozzle moves, a run starts elsewhere or the fibre has a curvature, the law is not known
+and paths are sampled: one ensemble tells how far they get, a second one checks the box.
 """
 
 from __future__ import annotations
@@ -16,8 +16,9 @@ import numpy as np
 from fpsolve._support.arrays import Array
 from fpsolve._support.checks import check_positive
 from fpsolve.model.curves.table import TabulatedCurve
-from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.fibre import FibreModel
 from fpsolve.model.potentials.nodes import GibbsNodes
+from fpsolve.model.smooth import SmoothLayDownModel
 from fpsolve.paths.laws import EquilibriumLaw
 from fpsolve.paths.sampling import sample_paths
 
@@ -57,12 +58,15 @@ class Travel:
         How far they were followed.
     outside, positions : int
         Positions of the second ensemble outside the box, and in all.
+    curvature : float
+        Largest √E κ² of the first; 0 for the basic model, which has none.
     """
 
     half_widths: tuple[float, float]
     s_end: float
     outside: int
     positions: int
+    curvature: float
 
     @property
     def text(self) -> str:
@@ -74,7 +78,7 @@ class Travel:
 
 
 def box_for_travel(
-    model: LayDownModel,
+    model: FibreModel,
     nodes: GibbsNodes,
     least: tuple[float, float],
     lost: float,
@@ -85,7 +89,7 @@ def box_for_travel(
 
     Parameters
     ----------
-    model : LayDownModel
+    model : LayDownModel or SmoothLayDownModel
     nodes : GibbsNodes
         Of its potential.
     least : (float, float)
@@ -104,19 +108,24 @@ def box_for_travel(
     """
     plan = _Plan.of(model, nodes, s_end)
     law = EquilibriumLaw(model.potential) if initial is None else initial
-    first = plan.positions(model, law, _SEEDS[0])
+    paths = plan.sampled(model, law, _SEEDS[0])
+    first = np.asarray(paths.xi)
     wanted = [
         max(half, _reach(np.abs(first[:, :, axis]), lost, model, plan.settles))
         for axis, half in enumerate(least)
     ]
-    second = plan.positions(model, law, _SEEDS[1])
+    curvature = 0.0
+    if isinstance(model, SmoothLayDownModel):
+        curvature = math.sqrt((paths.kappa**2).mean(axis=1).max())
+    second = np.asarray(plan.sampled(model, law, _SEEDS[1]).xi)
     for _ in range(_N_TRIES):
         half_widths = rounded_up(wanted[0]), rounded_up(wanted[1])
         beyond = (np.abs(second) > half_widths).any(axis=2)
         n_outside, n = int(beyond.sum()), beyond.size
         at_once = int(beyond.sum(axis=1).max())
         if n_outside <= lost * n and at_once <= _MOST_AT_ONCE:
-            return Travel(half_widths, plan.s_end - plan.s_start, n_outside, n)
+            length = plan.s_end - plan.s_start
+            return Travel(half_widths, length, n_outside, n, curvature)
         wanted = [_WIDER * half for half in wanted]
     raise ValueError(
         f"`model` must keep its paths together to suggest a box, got {n_outside} of "
@@ -139,7 +148,7 @@ class _Plan:
     settles: bool
 
     @classmethod
-    def of(cls, model: LayDownModel, nodes: GibbsNodes, s_end: float | None) -> _Plan:
+    def of(cls, model: FibreModel, nodes: GibbsNodes, s_end: float | None) -> _Plan:
         deviations = nodes.deviations()
         length = max(deviations)
         forces = nodes.mean_square_forces()
@@ -165,17 +174,16 @@ class _Plan:
         ds = (end - start) / n_steps
         return cls(start, end, ds, tuple((start + places * ds).tolist()), settles)
 
-    def positions(self, model: LayDownModel, law: Any, seed: int) -> Array:
-        """ξ of the paths at every look; shape (n_looks, n_paths, 2)."""
+    def sampled(self, model: FibreModel, law: Any, seed: int) -> Any:
+        """The paths, which have ξ at every look; shape (n_looks, n_paths, 2)."""
         looks = (*self.looks[:-1], self.s_end)
-        paths = sample_paths(
+        return sample_paths(
             model, _N_PATHS, self.s_end, self.ds,
             seed=seed, initial=law, save_at=looks, s_start=self.s_start,
         )  # fmt: skip
-        return np.asarray(paths.xi)
 
 
-def _span(model: LayDownModel) -> tuple[float, float]:
+def _span(model: FibreModel) -> tuple[float, float]:
     """Where the curve begins and ends."""
     curve = model.curve
     if isinstance(curve, TabulatedCurve):
@@ -189,7 +197,7 @@ def _settling_length(noise: float, length: float) -> float:
     return _RELAXATIONS * (2.0 / square + square * length * length)
 
 
-def _reach(distance: Array, lost: float, model: LayDownModel, settles: bool) -> float:
+def _reach(distance: Array, lost: float, model: FibreModel, settles: bool) -> float:
     """Distance that all but a share of the paths keep, in every group of looks."""
     groups = np.array_split(distance, min(2 * _N_GROUPS, len(distance)))
     share = lost if model.curve.autonomous else lost / (len(distance) / len(groups))
@@ -204,7 +212,7 @@ def _reach(distance: Array, lost: float, model: LayDownModel, settles: bool) -> 
     return max(reaches)
 
 
-def _exponential_quantile(distance: Array, share: float, model: LayDownModel) -> float:
+def _exponential_quantile(distance: Array, share: float, model: FibreModel) -> float:
     """Where the share is beyond, if the tail beyond a hundredth falls exponentially."""
     threshold = float(np.quantile(distance, 1 - _TAIL))
     excess = distance[distance > threshold] - threshold

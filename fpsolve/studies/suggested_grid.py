@@ -19,12 +19,14 @@ from fpsolve.density.error_laws import (
 )  # fmt: skip
 from fpsolve.density.suggestions import check_tolerance
 from fpsolve.grids.phase_space import PhaseSpaceGrid
-from fpsolve.model.laydown import LayDownModel, check_model
+from fpsolve.grids.smooth import SmoothPhaseSpaceGrid
+from fpsolve.model.fibre import FibreModel, check_fibre_model
 from fpsolve.model.potentials.nodes import GibbsNodes, gibbs_nodes
 from fpsolve.model.potentials.potential import Potential
+from fpsolve.model.smooth import SmoothLayDownModel
 from fpsolve.studies.boxes import box_for_travel, rounded_up
 
-__all__ = ["SuggestedGrid", "box_half_widths", "suggest_grid"]
+__all__ = ["SuggestedGrid", "SuggestedSmoothGrid", "box_half_widths", "suggest_grid"]
 
 # Share of the tolerance spent on what the box cuts off; never so much that the
 # boundary mass would stop a run at its default tolerance of 1e-3.
@@ -32,6 +34,8 @@ BOX_SHARE = 0.1
 LARGEST_LOSS = 5e-5
 # Sizes of the pattern within which the force has to balance the belt.
 WIDEST = 1e3
+# Half width of the curvature in its deviations √E κ², and cells in κ over √(A²/2R).
+DEVIATIONS, CURVATURE_CELL = 6.0, 0.6
 # Cells beyond any machine: 32 GiB for one density.
 MOST_CELLS = 2.0**32
 
@@ -57,24 +61,56 @@ class SuggestedGrid(PhaseSpaceGrid):
         return grid
 
 
+class SuggestedSmoothGrid(SmoothPhaseSpaceGrid):
+    """A grid with a curvature that knows why: with a `reason`.
+
+    Attributes
+    ----------
+    reason : str
+        What set the box, the range of κ and each number of cells.
+    """
+
+    reason: str
+
+    @classmethod
+    def of(
+        cls, grid: SuggestedGrid, model: SmoothLayDownModel, curvature: float
+    ) -> SuggestedSmoothGrid:
+        """The grid of (ξ, α) with a range for curvatures of that deviation."""
+        deviation = math.sqrt(model.curvature_variance)
+        half_width = DEVIATIONS * max(curvature, deviation)
+        n_kappa = 2 * math.ceil(half_width / (CURVATURE_CELL * deviation))
+        n1, n2, n_alpha = grid.shape
+        curved = cls(grid.half_width, half_width, (n1, n2, n_alpha, n_kappa))
+        reason = (
+            f"{grid.reason} |κ| < {half_width:.3g} are {DEVIATIONS:g} times √E κ² = "
+            f"{curvature:.3g}, and {n_kappa} cells resolve the Gaussian of deviation "
+            f"{deviation:.3g}."
+        )
+        object.__setattr__(curved, "reason", reason)
+        return curved
+
+
 def suggest_grid(
-    model: LayDownModel,
+    model: FibreModel,
     tolerance: float = 1e-2,
     *,
     initial: Any = None,
     s_end: float | None = None,
-) -> SuggestedGrid:
+) -> SuggestedGrid | SuggestedSmoothGrid:
     """Box and cells for an L1 error of about `tolerance`, from the measured laws.
 
     The box holds all but a tenth of the tolerance (5e-5 at most) of e^{−B}, all wells
     of it. Where the belt or a nozzle moves, or the start is given, it also holds 8192
-    paths and is checked with 8192 others. The cells resolve features half as wide as
-    the equilibrium, or its wells, with eight-point interpolation; a narrower start
-    needs more. Cells and angles grow as the noise falls.
+    paths and is checked with 8192 others, as always for smooth fibres, which stray
+    farther than e^{−B} says; their curvatures reach six times √E κ². The cells resolve
+    features half as wide as the equilibrium, or its wells, with eight-point
+    interpolation; a narrower start needs more. Cells and angles grow as the noise
+    falls.
 
     Parameters
     ----------
-    model : LayDownModel
+    model : LayDownModel or SmoothLayDownModel
         Its e^{−B} must be normalisable.
     tolerance : float
     initial : law, optional
@@ -85,8 +121,8 @@ def suggest_grid(
 
     Returns
     -------
-    SuggestedGrid
-        A PhaseSpaceGrid; `.reason` says why.
+    SuggestedGrid or SuggestedSmoothGrid
+        A PhaseSpaceGrid, or a SmoothPhaseSpaceGrid; `.reason` says why.
 
     Raises
     ------
@@ -95,7 +131,7 @@ def suggest_grid(
         a reasonable size holds the law: paths spread without end, e^{−B} falls like a
         power, or its wells are tiny for their distance.
     """
-    check_model(model)
+    check_fibre_model(model)
     check_tolerance(tolerance)
     if not model.potential.normalisable:
         raise ValueError(
@@ -104,9 +140,16 @@ def suggest_grid(
         )
     lost = min(BOX_SHARE * tolerance, LARGEST_LOSS)
     nodes = gibbs_nodes(model.potential)
-    half_widths, held = box_of(model, nodes, lost, initial, s_end)
+    smooth = isinstance(model, SmoothLayDownModel)
+    if smooth and not model.noise > 0:
+        raise ValueError(
+            "`noise` must be positive for a density of the curvature, got 0: without "
+            "noise κ is a function of the path; follow it with `sample_paths`."
+        )
+    half_widths, held, curvature = box_of(model, nodes, lost, initial, s_end)
     length = unit_of_nodes(nodes)
-    law = splitting_coefficient(model, sum(nodes.mean_square_forces()), length)
+    basic: Any = getattr(model, "white_noise_limit", model)
+    law = splitting_coefficient(basic, sum(nodes.mean_square_forces()), length)
     step = min(math.sqrt(tolerance / law) / length, 1.0)
     noise = model.noise * math.sqrt(length)
     width = feature_width_of(nodes, noise)
@@ -127,17 +170,20 @@ def suggest_grid(
     if kink > 0:
         reason += f"; the kink of slope {kink:.2g} at the origin limits the cells"
     reason += "."
-    return SuggestedGrid.because(half_widths, (n1, n2, n_alpha), reason)
+    grid = SuggestedGrid.because(half_widths, (n1, n2, n_alpha), reason)
+    if isinstance(model, SmoothLayDownModel):
+        return SuggestedSmoothGrid.of(grid, model, curvature)
+    return grid
 
 
 def box_of(
-    model: LayDownModel,
+    model: FibreModel,
     nodes: GibbsNodes,
     lost: float,
     initial: Any,
     s_end: float | None,
-) -> tuple[tuple[float, float], str]:
-    """Half widths of a box that holds the law, and what they leave outside."""
+) -> tuple[tuple[float, float], str, float]:
+    """Half widths of a box that holds the law, what they leave outside, and √E κ²."""
     if not nodes.unknown < lost / 2:
         raise ValueError(
             f"`potential` must fall fast enough for a box, got {model.potential!r}: "
@@ -145,18 +191,19 @@ def box_of(
             "choose a box by hand."
         )
     half1, half2 = nodes.half_widths(lost)
-    if model.curve.fixed and initial is None:
+    smooth = isinstance(model, SmoothLayDownModel)
+    if model.curve.fixed and initial is None and not smooth:
         half_widths = rounded_up(half1), rounded_up(half2)
         if nodes.outside(half_widths) > lost:
             half1, half2 = nodes.half_widths(lost / 2)
             half_widths = rounded_up(half1), rounded_up(half2)
         outside = nodes.outside(half_widths)
-        return half_widths, f"leave {outside:.1e} of exp(-B) outside"
+        return half_widths, f"leave {outside:.1e} of exp(-B) outside", 0.0
     shift = belt_shift(model)
     travel = box_for_travel(model, nodes, (half1 + shift, half2), lost, initial, s_end)
     belt = "" if model.curve.fixed else f", belt shift {shift:.2g}"
     held = f"leave less than {lost:.1g} outside ({travel.text}{belt})"
-    return travel.half_widths, held
+    return travel.half_widths, held, travel.curvature
 
 
 def check_size(
@@ -177,7 +224,7 @@ def box_half_widths(potential: Potential, lost: float) -> tuple[float, float]:
     return gibbs_nodes(potential).half_widths(lost)
 
 
-def belt_shift(model: LayDownModel) -> float:
+def belt_shift(model: FibreModel) -> float:
     """Where the belt moves the mean of ξ1: |∂₁B| = A²k/2 with I₁(k)/I₀(k) = v.
 
     From where B is lowest along the belt; zero where the force never gets that strong.
