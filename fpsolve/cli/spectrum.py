@@ -17,14 +17,28 @@ from fpsolve.cli.potentials import PARAMETERS, Kind, Noise, Parameters, with_par
 __all__ = ["spectrum"]
 
 Count = Annotated[int, typer.Option("--count", "-n", min=1, help="How many.")]
-Tolerance = Annotated[float, typer.Option(help="Relative error of every eigenvalue.")]
+Tolerance = Annotated[
+    float | None,
+    typer.Option(
+        help="Relative error of every eigenvalue.",
+        show_default="1e-10, with a relaxation length 1e-6",
+    ),
+]
+Length = Annotated[
+    float | None,
+    typer.Option(
+        metavar="R", help="Relaxation length R of the curvature: a smooth fibre."
+    ),
+]
 BeltSpeed = Annotated[
     float, typer.Option(metavar="V", help="Belt speed, for quadratic potentials.")
 ]
 Memory = Annotated[
     float | None,
     typer.Option(
-        metavar="MIB", help="Memory for the largest basis, in MiB.", show_default="256"
+        metavar="MIB",
+        help="Memory for the largest basis, in MiB.",
+        show_default="256, with a relaxation length 2048",
     ),
 ]
 WorkLimit = Annotated[
@@ -32,7 +46,7 @@ WorkLimit = Annotated[
     typer.Option(
         metavar="N",
         help="Numbers gone through before it is refused; 1e10 take some 20 s.",
-        show_default="1e10",
+        show_default="1e10, with a relaxation length 2e10",
     ),
 ]
 
@@ -42,8 +56,9 @@ def spectrum(
     potential: Kind = "quadratic",
     noise: Noise = 1.0,
     count: Count = 6,
-    tolerance: Tolerance = 1e-10,
+    tolerance: Tolerance = None,
     belt_speed: BeltSpeed = 0.0,
+    relaxation_length: Length = None,
     parameters: Parameters = PARAMETERS,
     memory_limit: Memory = None,
     work_limit: WorkLimit = None,
@@ -54,18 +69,24 @@ def spectrum(
 
     Prints them with errors, residuals and sectors, the slowest first, and writes them
     and a figure. The gap is the rate at which p/p_S - 1 decays in the end.
+    With a relaxation length they are those of a smooth fibre, about an isotropic
+    quadratic potential on a belt at rest.
     """
     names = "spectrum.nc", "spectrum.png"
     with command(out, *names, figures=not no_figures) as frame:
         from fpsolve._support.checks import check_positive
         from fpsolve.model.curves.belts import FixedBelt, MovingBelt
+        from fpsolve.model.fibre import FibreModel
         from fpsolve.model.laydown import LayDownModel
+        from fpsolve.model.smooth import SmoothLayDownModel
         from fpsolve.plotting.spectrum import plot_spectrum
         from fpsolve.spectral.eigen.spectrum import spectrum as compute
 
         curve = MovingBelt(belt_speed) if belt_speed else FixedBelt()
         chosen = parameters.make(potential)
-        model = LayDownModel(chosen, noise, curve)
+        model: FibreModel = LayDownModel(chosen, noise, curve)
+        if relaxation_length is not None:
+            model = SmoothLayDownModel(chosen, relaxation_length, noise, curve)
         options: dict[str, Any] = {"n_eigenvalues": count, "tolerance": tolerance}
         if memory_limit is not None:
             limit = check_positive("--memory-limit", memory_limit) * 2**20
@@ -78,6 +99,7 @@ def spectrum(
         used = command_line(
             "spectrum", potential=chosen, noise=noise, count=count,
             tolerance=tolerance, belt_speed=belt_speed or None,
+            relaxation_length=relaxation_length,
             memory_limit=memory_limit, work_limit=work_limit,
         )  # fmt: skip
         found = replace(found, provenance={**found.provenance, **used})

@@ -21,6 +21,7 @@ PAGES: dict[str, str | Callable[[Any, str], Section]] = {
     "periodic-state": "fpsolve.pages.periodic:section",
     "spectral": "fpsolve.pages.plain:spectral",
     "spectral-steady-state": "fpsolve.pages.plain:spectral_steady_state",
+    "smooth-spectral-steady-state": "fpsolve.pages.plain:spectral_steady_state",
     "energy-paths": "fpsolve.pages.plain:energy_paths",
     "hydrodynamic-paths": "fpsolve.pages.plain:hydrodynamic_paths",
     "web": "fpsolve.pages.web:section",

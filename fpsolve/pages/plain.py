@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from fpsolve.density.stationary.result import SteadyState
     from fpsolve.reduced.energy.sampling import EnergyPaths
     from fpsolve.reduced.hydrodynamic.sampling import HydrodynamicPaths
+    from fpsolve.spectral.evolution.smooth_steady import SmoothSpectralSteadyState
     from fpsolve.spectral.evolution.solution import SpectralSolution
     from fpsolve.spectral.evolution.steady import SpectralSteadyState
 
@@ -62,12 +63,15 @@ def steady_state(result: SteadyState, source: str) -> Section:
     ])  # fmt: skip
 
 
-def spectral_steady_state(result: SpectralSteadyState, source: str) -> Section:
-    """Return the section of a page about a stationary expansion."""
-    degree, harmonics = result.truncation
+def spectral_steady_state(
+    result: SpectralSteadyState | SmoothSpectralSteadyState, source: str
+) -> Section:
+    """Return the section of a page about a stationary expansion, basic or smooth."""
+    degree, harmonics, *curvature = result.truncation
+    curved = f", degree {curvature[0]} in κ" if curvature else ""
     items = [
         *model_facts(result.model),
-        ("truncation", f"degree {degree}, {harmonics} harmonics"),
+        ("truncation", f"degree {degree}, {harmonics} harmonics{curved}"),
         ("residual", f"{result.residual:.2g}"),
     ]
     note = Paragraph(

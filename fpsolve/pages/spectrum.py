@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from fpsolve.model.smooth import SmoothLayDownModel
 from fpsolve.pages.blocks import Facts, Paragraph, Part, Section, Table
 from fpsolve.pages.figures import drawings
 from fpsolve.pages.origin import provenance_part
@@ -19,14 +20,19 @@ def section(spectrum: Spectrum, source: str) -> Section:
     """Return the section of a page about a spectrum."""
     items = [
         *model_facts(spectrum.model),
-        ("largest basis", " × ".join(map(str, spectrum.truncation))),
+        (
+            "largest basis",
+            " × ".join(str(size) for size in spectrum.truncation if size),
+        ),
     ]
     if spectrum.essential is not None:
         items.append(("essential spectrum", f"from {spectrum.essential:.12g} to -∞"))
     gap = f"{spectrum.gap:.12g} ± {spectrum.gap_error:.1g}"
+    smooth = isinstance(spectrum.model, SmoothLayDownModel)
+    distance = "the distance to the stationary density" if smooth else "p/p_S - 1"
     said = (
-        f"The spectral gap is {gap}: in the end p/p_S - 1 falls like exp(-λs) with "
-        "this λ, its relative entropy with twice that."
+        f"The spectral gap is {gap}: in the end {distance} falls like exp(-λs) with "
+        "this λ, the relative entropy with twice that."
     )
     return Section("Eigenvalues of the generator", source, [
         Part("Summary", [Paragraph(said)]),

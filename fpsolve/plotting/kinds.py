@@ -142,6 +142,7 @@ FIGURES: dict[str, Callable[[Any], Figures]] = {
     "spectral": each(series=(plot_spectral, always)),
     # A density on whatever grid is chosen, and none before.
     "spectral-steady-state": each(),
+    "smooth-spectral-steady-state": each(),
     "energy-paths": each(energies=(plot_energy_paths, always)),
     "hydrodynamic-paths": each(moments=(plot_hydrodynamic_paths, always)),
     "web": each(

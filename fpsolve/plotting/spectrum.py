@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fpsolve._support.checks import check_kind
+from fpsolve.model.fibre import FibreModel
+from fpsolve.model.smooth import SmoothLayDownModel
 from fpsolve.plotting.style import COLOURS, COLUMN, LINES, MARKERS, drawing
 from fpsolve.spectral.eigen.spectrum import Spectrum
 
@@ -44,13 +46,21 @@ def plot_spectrum(found: Spectrum) -> Figure:
         axes.set(
             xlabel=r"$\mathrm{Re}\,\lambda$",
             ylabel=r"$\mathrm{Im}\,\lambda$",
-            title=f"$B$ = {model.potential.formula},  $A$ = {model.noise:g}",
+            title=f"$B$ = {model.potential.formula},  {amplitude(model)}",
         )
         bottom, top = axes.get_ylim()
         if top - bottom < 1e-6:
             axes.set_ylim(-0.5, 0.5)
         axes.legend(loc="best")
     return figure
+
+
+def amplitude(model: FibreModel) -> str:
+    """Return the noise, and the relaxation length of a smooth fibre."""
+    words = f"$A$ = {model.noise:g}"
+    if isinstance(model, SmoothLayDownModel):
+        words += f",  $R$ = {model.relaxation_length:g}"
+    return words
 
 
 def sector_label(sector: str) -> str:

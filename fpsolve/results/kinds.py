@@ -85,6 +85,11 @@ KINDS = {
         "fpsolve.spectral.evolution.steady:spectral_steady_state",
         "fpsolve.spectral.evolution.steady:SpectralSteadyState",
     ),
+    "smooth-spectral-steady-state": Kind(
+        "stationary expansions of smooth fibres",
+        "fpsolve.spectral.evolution.steady:spectral_steady_state",
+        "fpsolve.spectral.evolution.smooth_steady:SmoothSpectralSteadyState",
+    ),
     "energy-paths": Kind(
         "paths of the energy process",
         "fpsolve.reduced.energy.process:EnergyProcess.sample",

@@ -115,3 +115,24 @@ def test_a_smooth_run_without_a_grid_gets_one_that_is_kept(run, tmp_path):
     assert "are 6 times" in answer.output
     written = load_config(tmp_path / "out/smooth.toml", RunConfig)
     assert written.grid.make() == grid
+
+
+def test_the_spectrum_of_a_smooth_fibre_is_that_of_the_library(fpsolve, tmp_path):
+    answer = fpsolve(
+        "spectrum", "--noise", 4, "--relaxation-length", 0.1, "--count", 1,
+        "--tolerance", 1e-3, "--no-figures", "--out", tmp_path,
+    )  # fmt: skip
+    assert answer.exit_code == 0, answer.output
+    model = fp.SmoothLayDownModel(fp.QuadraticPotential(), 0.1, 4.0)
+    found = fp.load(tmp_path / "spectrum.nc")
+    assert found.model == model
+    assert found.gap == fp.spectral_gap(model, tolerance=1e-3)
+    assert f"gap {found.gap:.12g}" in answer.output
+
+
+def test_a_spectrum_of_a_smooth_fibre_without_a_basis_is_a_mistake(fpsolve, tmp_path):
+    answer = fpsolve(
+        "spectrum", "--relaxation-length", 0.1, "--potential", "linear",
+        "--out", tmp_path,
+    )  # fmt: skip
+    assert_mistake(answer, "`potential` must be a QuadraticPotential")

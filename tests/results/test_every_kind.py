@@ -27,6 +27,7 @@ REST = fp.LayDownModel(QUADRATIC, 1.0)
 BELT = fp.LayDownModel(QUADRATIC, 1.0, fp.MovingBelt(0.2))
 TURNING = fp.LayDownModel(QUADRATIC, 1.5, fp.RotatingNozzle(0.2, 0.5, 1.0))
 SMOOTH = fp.SmoothLayDownModel(QUADRATIC, 0.5, 1.0, fp.MovingBelt(0.2))
+RESTING = fp.SmoothLayDownModel(QUADRATIC, 0.1, 4.0)
 PROCESS = fp.EnergyProcess(QUADRATIC, 0.5)
 LIMIT = fp.HydrodynamicLimit(fp.LayDownModel(QUADRATIC, 2.0, fp.MovingBelt(0.1)))
 OWN_POTENTIAL = fp.IsotropicPotential(lambda r: r**2 / 2, lambda r: r)
@@ -102,6 +103,9 @@ MAKERS = {
         REST, (FINER, start_on(FINER)), [1.0], tolerance=1e-2
     ),
     "spectral-steady-state": lambda: fp.spectral_steady_state(BELT, tolerance=1e-2),
+    "smooth-spectral-steady-state": lambda: fp.spectral_steady_state(
+        RESTING, tolerance=1e-2
+    ),
     # An iterator is used up by the call, and kept for its repetition.
     "energy-paths": lambda: PROCESS.sample(
         50, 1.0, 0.25, seed=2, initial="stationary", save_at=iter([0.5, 1.0])
@@ -122,6 +126,7 @@ MAKERS = {
         paths_ds=0.125, solve_options={"boundary_tolerance": 1.0},
     ),
     "spectrum": lambda: fp.spectrum(REST, 3, tolerance=1e-4),
+    "spectrum, smooth": lambda: fp.spectrum(RESTING, 1, tolerance=1e-3),
     "rate": lambda: studies.rate_versus_noise(
         QUADRATIC, [2.0], quick=True, parts=["gap"], workers=0
     ),
@@ -269,6 +274,9 @@ NUMBERS = {
     "periodic-state": lambda found: f"{found.error:.2g}",
     "spectral": lambda found: f"{found.mean_xi1[-1]:.10g}",
     "spectral-steady-state": lambda found: f"{found.moments['mean_xi1']:.10g}",
+    "smooth-spectral-steady-state": lambda found: (
+        f"{found.moments['mean_kappa2']:.10g}"
+    ),
     "energy-paths": lambda found: f"{found.g[-1].mean():.5g}",
     "hydrodynamic-paths": lambda found: f"{found.mean()[0][-1, 0]:.5g}",
     "spectrum": lambda found: f"{found.gap:.12g}",
@@ -301,6 +309,16 @@ def test_what_is_loaded_answers_like_what_was_saved():
     assert steady.density_error(GRID) == result("spectral-steady-state").density_error(
         GRID
     )
+    smooth, curved = loaded("smooth-spectral-steady-state"), loaded("spectrum, smooth")
+    np.testing.assert_array_equal(
+        smooth.density(CURVED, tolerance=0.1),
+        result("smooth-spectral-steady-state").density(CURVED, tolerance=0.1),
+    )
+    for mode in ("eigenfunction", "density_mode"):
+        np.testing.assert_array_equal(
+            getattr(curved, mode)(0, CURVED),
+            getattr(result("spectrum, smooth"), mode)(0, CURVED),
+        )
     for i in range(3):
         np.testing.assert_array_equal(
             spectrum.eigenfunction(i, GRID), result("spectrum").eigenfunction(i, GRID)

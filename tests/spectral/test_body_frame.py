@@ -89,3 +89,30 @@ def test_units_of_length_scale_the_matrix():
         matrix = BASIS.matrix(sector, *SMALL)
         # Rounding of entries of size 10.
         assert abs(matrix - scaled).max() < 1e-13
+
+
+def test_the_size_of_a_sector_is_known_without_its_functions():
+    for sector in (EVEN, ODD, ONE):
+        for truncation in (Truncation(4, 4, 3), Truncation(5, 5, 6)):
+            counted = len(BASIS.harmonics(sector, truncation))
+            assert BASIS.size(sector, truncation) == counted
+
+
+def test_moments_are_those_of_the_density_on_a_grid():
+    truncation = Truncation(4, 4, 4)
+    vector = np.random.default_rng(3).standard_normal(BASIS.size(EVEN, truncation))
+    found = BASIS.stationary_moments(vector, truncation)
+    p = BASIS.dual_values(vector, EVEN, truncation, GRID)
+    # A combination of real functions: rounding of numbers of size one.
+    assert np.abs(p.imag).max() < 1e-14 * np.abs(p.real).max()
+    xi1, _, alpha, kappa = GRID.mesh()
+    mass = GRID.cell_volume * p.real.sum()
+    # The trapezoidal rule: the tails of w^ϑ in the box, 1e-10 of the whole.
+    assert found["mass"] == pytest.approx(mass, rel=1e-8)
+    for name, f in (
+        ("variance_xi1", xi1**2),
+        ("mean_kappa2", kappa**2),
+        ("mean_cos_alpha", np.cos(alpha)),
+    ):
+        mean = GRID.cell_volume * (p.real * f).sum() / mass
+        assert found[name] == pytest.approx(mean, rel=1e-7, abs=1e-9)

@@ -6,33 +6,41 @@ import math
 
 import numpy as np
 
-from fpsolve.model.laydown import LayDownModel, check_model
+from fpsolve.model.fibre import FibreModel
+from fpsolve.model.laydown import check_model
 from fpsolve.model.potentials.potential import Potential
 from fpsolve.model.potentials.quadratic import QuadraticPotential
+from fpsolve.model.smooth import SmoothLayDownModel
 from fpsolve.spectral.bases.hermite import HermiteDiscretisation
 from fpsolve.spectral.bases.sectors import Discretisation
+from fpsolve.spectral.bases.smooth import SmoothDiscretisation
 from fpsolve.spectral.bases.tensor import TensorDiscretisation
+from fpsolve.spectral.bases.weights import half_loudness, quadratic
 
 __all__ = ["check_resolved", "discretisation_for", "orbit_radius"]
 
 # A √R, R the radius of the circular orbit. Below it rates are lost in the rounding of
 # the frequencies, above it the other way round, and no basis that fits helps.
 QUIETEST, LOUDEST = 1e-3, 1e6
+# a = A²R/2 of a smooth fibre: its curvature needs a functions more.
+LARGEST_LOUDNESS = 200.0
 # Radii at which a circular orbit is looked for: first, and in units far from usual.
 _USUAL, _SHORTEST = (1e-9, 1e9), 1e-76
 
 
-def discretisation_for(model: LayDownModel) -> Discretisation:
+def discretisation_for(model: FibreModel) -> Discretisation:
     """The basis for the generator of a model.
 
     Raises
     ------
     TypeError
-        If `model` is not a LayDownModel.
+        If `model` is neither a LayDownModel nor a SmoothLayDownModel.
     ValueError
         If the model has no gap (no noise, no confinement, no autonomous curve) or no
         basis (a potential neither isotropic nor quadratic, a belt under another).
     """
+    if isinstance(model, SmoothLayDownModel):
+        return smooth_discretisation_for(model)
     check(model)
     potential, noise = model.potential, model.noise
     if isinstance(potential, QuadraticPotential):
@@ -57,9 +65,32 @@ def discretisation_for(model: LayDownModel) -> Discretisation:
     return RadialDiscretisation(potential, noise)
 
 
-def check(model: LayDownModel) -> None:
+def smooth_discretisation_for(model: SmoothLayDownModel) -> SmoothDiscretisation:
+    """The basis for the generator of (23); ValueError where there is none."""
+    from fpsolve.spectral.bases.body_frame import BodyFrameDiscretisation
+
+    check(model)
+    if not (quadratic(model).isotropic and model.curve.fixed):
+        raise ValueError(
+            "`potential` must be isotropic and the belt at rest for the spectrum of a "
+            f"smooth fibre, got {model.potential!r} and {model.curve!r}; use `solve` "
+            "and `steady_state`."
+        )
+    a = half_loudness(model)
+    if not a <= LARGEST_LOUDNESS:
+        highest = math.sqrt(2 * LARGEST_LOUDNESS / model.relaxation_length)
+        raise ValueError(
+            f"`noise` must be at most {highest:.3g} for the spectrum of a fibre with "
+            f"this relaxation length, got {model.noise:g}: A²R/2 is {a:.3g}, and the "
+            "fibre circles. The limit of large noise is near, HydrodynamicLimit."
+        )
+    return BodyFrameDiscretisation(model)
+
+
+def check(model: FibreModel) -> None:
     """Raise unless the model has a stationary density that it forgets its start for."""
-    check_model(model)
+    if not isinstance(model, SmoothLayDownModel):
+        check_model(model)
     if not model.noise > 0:
         raise ValueError(
             "`noise` must be positive, got 0; without noise the orbits of different "
@@ -77,7 +108,7 @@ def check(model: LayDownModel) -> None:
         )
 
 
-def check_resolved(model: LayDownModel) -> None:
+def check_resolved(model: FibreModel) -> None:
     """Raise ValueError where rates and frequencies differ by more than rounding."""
     radius = orbit_radius(model.potential)
     scaled = model.noise * math.sqrt(radius)

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.sparse import csc_array, diags_array
 
 from fpsolve.model.smooth import SmoothLayDownModel
-from fpsolve.spectral.bases.weights import Weight, loudness
+from fpsolve.spectral.bases.weights import Weight, half_loudness
 
 __all__ = ["CurvatureOperators", "curvature_degree", "curvature_operators"]
 
@@ -57,9 +57,9 @@ def curvature_operators(
 
 
 def curvature_degree(model: SmoothLayDownModel, degree: int) -> int:
-    """Degree in κ for one in ξ: 0.8 of it, and a + 6√a + 10 at least, a = A²R/2.
+    """Degree in κ for one in ξ: 0.8 of it, and a + 2√a + 2 more, a = A²R/2.
 
     Measured: with less the error of the moments is that of κ.
     """
-    a = 0.5 * loudness(model)
-    return max(math.ceil(0.8 * degree), math.ceil(a + 6 * math.sqrt(a) + 10))
+    a = half_loudness(model)
+    return math.ceil(0.8 * degree + a + 2 * math.sqrt(a) + 2)

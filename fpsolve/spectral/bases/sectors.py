@@ -93,6 +93,10 @@ class Discretisation(ABC):
 
     noise: float
     belt_speed: float = 0.0
+    # Of the columns before they are eliminated; None for one that the matrix decides.
+    ordering: ClassVar[str | None] = None
+    # Up to here an eigenvalue is the 0 of the constants, in units of a slow rate.
+    zero: ClassVar[float] = 1e-6
 
     @property
     def reversible(self) -> bool:
@@ -137,6 +141,14 @@ class Discretisation(ABC):
         grid: Any,
     ) -> Complex:
         """f on a grid of the phase space, shape `grid.shape`, from its coefficients."""
+
+    def size(self, sector: Sector, truncation: Truncation) -> int:
+        """Number of basis functions."""
+        return len(self.harmonics(sector, truncation))
+
+    def factor_entries(self, truncation: Truncation) -> int | None:
+        """Entries of the factors of a matrix; None where its size tells them."""
+        return None
 
     def on_edge(self, vector: Vector, sector: Sector, truncation: Truncation) -> bool:
         """Whether an eigenvector belongs to the truncation and not to L."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from scipy.special import hyp1f1
@@ -9,7 +10,13 @@ from scipy.special import hyp1f1
 from fpsolve.model.potentials.quadratic import QuadraticPotential
 from fpsolve.model.smooth import SmoothLayDownModel
 
-__all__ = ["Weight", "curvature_weight", "position_weight"]
+__all__ = [
+    "Weight",
+    "curvature_weight",
+    "half_loudness",
+    "position_weight",
+    "quadratic",
+]
 
 
 @dataclass(frozen=True)
@@ -35,33 +42,38 @@ def position_weight(model: SmoothLayDownModel) -> Weight:
     """Weight in ξ of a quadratic potential, in units of which throwing range σ1 = 1.
 
     The tail of the stationary density is exponential rather than Gaussian, by a length
-    that grows with R/σ1: ϑ falls with it. The variance is a little less than half that
-    of the limit of large noise, ₁F₁(1; a+1; a) σ1² with a = A²R/2, and of the density
-    at little noise.
+    that grows with R/σ1 and falls with the noise: ϑ is the smaller. In the limit of
+    large noise the density is Gaussian, of variance ₁F₁(1; a+1; a) σ1² with a = A²R/2,
+    of which w takes a share; at little noise its orbits are resolved by a narrow w.
 
-    Measured, not derived: with ϑ = 1 expansions diverge for R of about σ1/2 and more.
+    Measured, not derived: with ϑ = 1 expansions diverge for R of about σ1/2 and more,
+    and of the rules that were tried this one takes the fewest functions.
     """
     sigma = quadratic(model).sigma1
-    length, a = model.relaxation_length / sigma, 0.5 * loudness(model)
-    wide = 0.4 * (float(hyp1f1(1.0, a + 1.0, a)) + length)
-    return Weight(sigma**2 * max(1.0, wide), 1.0 - 0.35 * length / (length + 0.1))
+    length, noise = model.relaxation_length / sigma, model.noise * math.sqrt(sigma)
+    a = half_loudness(model)
+    softness = length / (length + 0.1 * (1.0 + 0.5 * noise**2))
+    exponent = 1.0 - 0.35 * softness
+    narrow = min(1.0, 0.78 * noise**0.6)
+    wide = (exponent - 0.25) * (float(hyp1f1(1.0, a + 1.0, a)) + length)
+    return Weight(sigma**2 * max(narrow, wide), exponent)
 
 
 def curvature_weight(model: SmoothLayDownModel) -> Weight:
-    """Weight in κ: that of a free fibre, A²/(2R), and ϑ < 1 where the force adds to it.
+    """Weight in κ: less than that of a free fibre, A²/(2R), which the force narrows.
 
     Without noise the curvature is that of the force, of the order of 1/σ1; hence the
-    least variance. Measured, not derived.
+    least variance, and ϑ < 1 where it counts. Measured, not derived.
     """
     sigma = quadratic(model).sigma1
-    variance = model.curvature_variance
-    exponent = 1.0 - 0.4 / (1.0 + 0.5 * sigma**2 * variance)
-    return Weight(max(variance, 0.2 / sigma**2), exponent)
+    free = sigma**2 * model.curvature_variance
+    variance = max(0.65 * free, min(free, 1.7), 0.2)
+    return Weight(variance / sigma**2, 1.0 - 0.4 / (1.0 + free / 8.0))
 
 
-def loudness(model: SmoothLayDownModel) -> float:
-    """A²R = K²R³: twice the a of the limit of large noise."""
-    return model.noise**2 * model.relaxation_length
+def half_loudness(model: SmoothLayDownModel) -> float:
+    """a = A²R/2 = K²R³/2, which is kept in the limit of large noise."""
+    return 0.5 * model.noise**2 * model.relaxation_length
 
 
 def quadratic(model: SmoothLayDownModel) -> QuadraticPotential:

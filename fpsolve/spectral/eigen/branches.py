@@ -68,8 +68,9 @@ class Branch:
         return discretisation_for(LayDownModel(self.potential, noise))
 
     def _near(self, noise: float, shift: complex, n: int) -> tuple[Complex, Complex]:
-        matrix = self._basis(noise).matrix(self.sector, *self.truncation)
-        return ShiftedInverse(matrix, shift).eigenpairs(n)
+        basis = self._basis(noise)
+        matrix = basis.matrix(self.sector, *self.truncation)
+        return ShiftedInverse(matrix, shift, None, basis.ordering).eigenpairs(n)
 
 
 class PairBranch(Branch):

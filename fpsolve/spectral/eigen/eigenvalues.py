@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from copy import copy
 from typing import Any
 
 import numpy as np
@@ -41,14 +42,21 @@ class ShiftedInverse:
         conjugate.
     work : Work, optional
         What all of it may cost.
+    ordering : str, optional
+        Of the columns, as SuperLU calls it, with pivots from all rows.
     """
 
     def __init__(
-        self, matrix: csc_array, shift: complex, work: Work | None = None
+        self,
+        matrix: csc_array,
+        shift: complex,
+        work: Work | None = None,
+        ordering: str | None = None,
     ) -> None:
         self.matrix, self.size = matrix, matrix.shape[0]
         self.shift = complex(shift)
         self.work = Work() if work is None else work
+        self.ordering = ordering
         self.dense = self.size <= DENSE
         if not self.dense:
             self._factorise()
@@ -58,16 +66,27 @@ class ShiftedInverse:
         self.dtype = np.float64 if real else np.complex128
         shift = self.shift.real if real else self.shift
         shifted = (self.matrix - shift * eye_array(self.size)).astype(self.dtype)
-        factors = self.factors = factorised(shifted.tocsc(), self.work)
-        work, n = self.work, self.size
+        self.factors = factorised(shifted.tocsc(), self.work, self.ordering)
+        self.operator = self._operator("N")
+
+    def _operator(self, transposed: str) -> LinearOperator:
+        factors, work, n = self.factors, self.work, self.size
 
         # Not a method: what refers to this object and belongs to it keeps the factors
         # in memory until the garbage is collected.
         def solve(right: Any) -> Any:
             work.solved(n, factors.nnz)
-            return factors.solve(right)
+            return factors.solve(right, transposed)
 
-        self.operator = LinearOperator(shifted.shape, matvec=solve, dtype=self.dtype)
+        return LinearOperator((n, n), matvec=solve, dtype=self.dtype)
+
+    def transposed(self) -> ShiftedInverse:
+        """(matrixᵀ - shift)⁻¹, of the same factors."""
+        other = copy(self)
+        other.matrix = self.matrix.T.tocsc()
+        if not self.dense:
+            other.operator = self._operator("T")
+        return other
 
     def eigenpairs(
         self, n: int, start: Any = None, tolerance: float = 0.0
@@ -140,9 +159,11 @@ class ShiftedInverse:
         return None
 
 
-def factorised(matrix: csc_array, work: Work) -> SuperLU:
+def factorised(matrix: csc_array, work: Work, ordering: str | None = None) -> SuperLU:
     """L U = the matrix, its rows and columns in an order that leaves few entries."""
-    if few_pivots(matrix):
+    if ordering is not None:
+        factors = splu(matrix, permc_spec=ordering, diag_pivot_thresh=1.0)
+    elif few_pivots(matrix):
         factors = splu(matrix, permc_spec="COLAMD", diag_pivot_thresh=1.0)
     else:
         # Structure and elimination order are symmetric: small factors.
@@ -170,10 +191,12 @@ def neighbour(values: Complex, chosen: int | np.integer[Any]) -> complex | None:
     return complex(others[np.argmin(np.abs(others - values[chosen]))])
 
 
-def factor_bytes(size: int) -> int:
+def factor_bytes(size: int, entries: int | None = None) -> int:
     """Memory for the factors of a matrix of a sector, and its Krylov vectors.
 
     Measured on the matrices of quadratic potentials: the factors hold about 3 log₂ n
-    complex entries and indices for every row.
+    complex entries and indices for every row, unless it is said how many.
     """
-    return int(size * (3 * math.log2(max(size, 2)) * 24 + 60 * 16))
+    if entries is None:
+        entries = math.ceil(3 * size * math.log2(max(size, 2)))
+    return int(24 * entries + 60 * 16 * size)

@@ -39,7 +39,8 @@ def next_mode(
     off = 1e-3 * mode.rate
     real = abs(value.imag) < PAIR * mode.rate
     shift = complex(value.real + off, 0.0 if real else value.imag)
-    values, vectors = ShiftedInverse(matrix, shift, work).eigenpairs(4, start)
+    inverse = ShiftedInverse(matrix, shift, work, discretisation.ordering)
+    values, vectors = inverse.eigenpairs(4, start)
     chosen = int(np.argmin(np.abs(values - value)))
     partner = neighbour(values, chosen)
     fine = replace(
@@ -49,7 +50,7 @@ def next_mode(
         truncation=truncation,
         partner=partner,
     )
-    return compared(fine, mode, condition(discretisation, fine, work))
+    return compared(fine, mode, condition(discretisation, fine, work, inverse))
 
 
 def compared(fine: Mode, coarse: Mode, condition: float) -> Mode:
@@ -97,27 +98,38 @@ def halves(mode: Mode) -> tuple[complex, complex]:
 
 
 def condition(
-    discretisation: Discretisation, mode: Mode, work: Work | None = None
+    discretisation: Discretisation,
+    mode: Mode,
+    work: Work | None = None,
+    inverse: ShiftedInverse | None = None,
 ) -> float:
     """1/|⟨l, r⟩|, unit left and right eigenvectors: how far rounding is magnified.
 
     Of a basic fibre on a fixed belt turning α by π takes L to L*, so that the left
     eigenvector is the right one with the odd harmonics reversed.
     """
-    left = left_vector(discretisation, mode, work)
+    left = left_vector(discretisation, mode, work, inverse)
     return 1 / max(abs(complex(left @ mode.vector)), TINY)
 
 
 def left_vector(
-    discretisation: Discretisation, mode: Mode, work: Work | None = None
+    discretisation: Discretisation,
+    mode: Mode,
+    work: Work | None = None,
+    inverse: ShiftedInverse | None = None,
 ) -> Complex:
-    """Unit coefficients of the eigenfunction of L*, whose matrix is the transpose."""
+    """Unit coefficients of the eigenfunction of L*, whose matrix is the transpose.
+
+    Where `inverse` is known of a shift near the eigenvalue, by its factors.
+    """
     if discretisation.reversible:
         k = discretisation.harmonics(mode.sector, mode.truncation)
         reversed_: Complex = np.where(k % 2 == 0, 1.0, -1.0) * mode.vector
         return reversed_
-    matrix = discretisation.matrix(mode.sector, *mode.truncation)
-    shift = mode.eigenvalue + 1e-3 * mode.rate
-    values, vectors = ShiftedInverse(matrix.T.tocsc(), shift, work).eigenpairs(2)
+    if inverse is None:
+        matrix = discretisation.matrix(mode.sector, *mode.truncation)
+        shift = mode.eigenvalue + 1e-3 * mode.rate
+        inverse = ShiftedInverse(matrix, shift, work, discretisation.ordering)
+    values, vectors = inverse.transposed().eigenpairs(2)
     chosen: Complex = vectors[:, np.argmin(np.abs(values - mode.eigenvalue))]
     return chosen

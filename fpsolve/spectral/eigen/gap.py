@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.fibre import FibreModel
 from fpsolve.spectral.bases.sectors import Sector
 from fpsolve.spectral.eigen.spectrum import Spectrum, spectrum
-from fpsolve.spectral.work import DEFAULT_WORK
 
 __all__ = ["SpectralGap", "spectral_gap"]
 
@@ -55,11 +54,11 @@ class SpectralGap(float):
 
 
 def spectral_gap(
-    model: LayDownModel,
+    model: FibreModel,
     *,
-    tolerance: float = 1e-10,
+    tolerance: float | None = None,
     memory_limit: int | None = None,
-    work_limit: float = DEFAULT_WORK,
+    work_limit: float | None = None,
 ) -> SpectralGap:
     """-max {Re λ : λ ≠ 0 in the spectrum of L}: the asymptotic rate of convergence.
 
@@ -69,13 +68,13 @@ def spectral_gap(
 
     Parameters
     ----------
-    model : LayDownModel
+    model : LayDownModel or SmoothLayDownModel
         As for `spectrum`.
-    tolerance : float
-        Largest error relative to the gap.
+    tolerance : float, optional
+        Largest error relative to the gap; by default as for `spectrum`.
     memory_limit : int, optional
         As for `spectrum`.
-    work_limit : float
+    work_limit : float, optional
         As for `spectrum`.
 
     Returns

@@ -77,13 +77,25 @@ class _Modes(Part):
         vectors = np.concatenate(
             [np.zeros(0, complex), *(mode.vector for mode in modes)]
         )
-        sizes = np.array([mode.truncation for mode in modes], np.int64).reshape(-1, 2)
+        sizes = np.array([mode.truncation for mode in modes], np.int64).reshape(-1, 3)
         lengths = np.array([mode.vector.size for mode in modes], np.int64)
+        degrees = (
+            {}
+            if not sizes[:, 2].any()
+            else {
+                "mode_curvature": (
+                    _INDEX,
+                    sizes[:, 2],
+                    labels("degree in κ of its basis"),
+                )
+            }
+        )
         of, coefficient = "coefficients of the eigenfunction", ("coefficient",)
         return {
             "mode_degree": (_INDEX, sizes[:, 0], labels("degree of its basis")),
             "mode_harmonics": (_INDEX, sizes[:, 1],
                                labels("largest harmonic of its basis")),
+            **degrees,
             "mode_size": (_INDEX, lengths, labels(of)),
             "mode_real": (coefficient, vectors.real, labels("Re of coefficients")),
             "mode_imag": (coefficient, vectors.imag, labels("Im of coefficients")),
@@ -112,10 +124,14 @@ def modes_of(
     """Every mode with its own coefficients."""
     vectors = joined(dataset, "mode_")
     degrees, harmonics, sizes = (dataset[name].to_numpy() for name in _Modes.needed[:3])
+    curvatures = np.zeros_like(degrees)
+    if "mode_curvature" in dataset:
+        curvatures = dataset["mode_curvature"].to_numpy()
     check_counts("mode_size", int(sizes.sum()), vectors.size, "`mode_real`")
     parts = np.split(vectors, np.cumsum(sizes)[:-1])
     for place, sector in enumerate(sectors):
-        truncation = Truncation(int(degrees[place]), int(harmonics[place]))
+        limits = degrees[place], harmonics[place], curvatures[place]
+        truncation = Truncation(*map(int, limits))
         yield Mode(complex(eigenvalues[place]), parts[place], sector, truncation)
 
 

@@ -18,7 +18,7 @@ from fpsolve.spectral.bases.choice import discretisation_for, orbit_radius
 from fpsolve.spectral.bases.sectors import Sector
 from fpsolve.spectral.eigen.branches import Branch, PairBranch
 from fpsolve.spectral.eigen.gap import SpectralGap, spectral_gap
-from fpsolve.spectral.eigen.spectrum import check_tolerance, essential_of
+from fpsolve.spectral.eigen.settings import check_tolerance, essential_of
 from fpsolve.spectral.eigen.survey import Scale, survey
 
 __all__ = ["OptimalNoise", "optimal_noise"]

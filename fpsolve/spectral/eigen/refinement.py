@@ -82,13 +82,15 @@ class Refinement:
 
     def required(self, level: int) -> int:
         """Bytes for the basis of a level, in the largest of the first sectors."""
-        return factor_bytes(self.size(level))
+        truncation = self.discretisation.truncation(level)
+        entries = self.discretisation.factor_entries(truncation)
+        return factor_bytes(self.size(level), entries)
 
     def size(self, level: int) -> int:
         """Functions in the largest of the first sectors."""
         truncation = self.discretisation.truncation(level)
         sectors = itertools.islice(self.discretisation.sectors(), 4)
-        return max(len(self.discretisation.harmonics(s, truncation)) for s in sectors)
+        return max(self.discretisation.size(sector, truncation) for sector in sectors)
 
     def growth(self, level: int) -> float:
         """By which the basis of the next level is larger."""

@@ -12,28 +12,30 @@ from numpy.typing import NDArray
 
 from fpsolve._support.arrays import Array, Complex
 from fpsolve._support.blas import one_blas_thread
-from fpsolve._support.checks import check_integer, check_positive, check_real, shown
-from fpsolve._support.memory import allowed_memory
+from fpsolve._support.checks import check_integer
 from fpsolve.evolution.call import Call, recorded
 from fpsolve.evolution.saved import Saved
-from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.grids.smooth import AnyGrid, check_smooth_grid
+from fpsolve.model.fibre import FibreModel
 from fpsolve.model.laydown import LayDownModel
-from fpsolve.model.potentials.quadratic import QuadraticPotential
 from fpsolve.spectral.bases.choice import check_resolved, discretisation_for
 from fpsolve.spectral.bases.sectors import Discretisation, Sector, Truncation
+from fpsolve.spectral.bases.smooth import SmoothDiscretisation
 from fpsolve.spectral.eigen.following import left_vector
 from fpsolve.spectral.eigen.layout import SPECTRUM
 from fpsolve.spectral.eigen.refinement import Refinement
+from fpsolve.spectral.eigen.settings import (
+    FINEST,
+    checked_sectors,
+    essential_of,
+    memory_of,
+    tolerance_for,
+    work_for,
+)
 from fpsolve.spectral.eigen.survey import Mode, Scale
-from fpsolve.spectral.work import DEFAULT_WORK, Work
 
 __all__ = ["Spectrum", "spectrum"]
 
-# What a spectrum may use unless told otherwise: degrees up to about 500 of the
-# quadratic potential, about a minute.
-DEFAULT_MEMORY = 2**28
-# Rounding alone leaves about this, relative to the rate.
-FINEST = 1e-13
 # More than any basis that fits resolves.
 MOST = 1000
 
@@ -44,7 +46,7 @@ class Spectrum(Saved):
 
     Attributes
     ----------
-    model : LayDownModel
+    model : LayDownModel or SmoothLayDownModel
     eigenvalues : ndarray of complex, shape (n,)
         Rightmost first; both of a complex pair, the one with the positive imaginary
         part first.
@@ -71,7 +73,7 @@ class Spectrum(Saved):
     kind: ClassVar[str] = "spectrum"
     layout = SPECTRUM
 
-    model: LayDownModel
+    model: FibreModel
     eigenvalues: Complex
     errors: Array
     residuals: Array
@@ -106,18 +108,26 @@ class Spectrum(Saved):
         """2 for the sectors ±M, else 1; shape (n,)."""
         return np.array([sector.multiplicity for sector in self.sectors], np.int64)
 
-    def eigenfunction(self, i: int, grid: PhaseSpaceGrid) -> Complex:
+    def eigenfunction(self, i: int, grid: AnyGrid) -> Complex:
         """F with L f = λ f on the grid, of norm 1 in L²(μ), μ = p_S.
+
+        Of a smooth fibre on a `SmoothPhaseSpaceGrid`, and of norm 1 in the space of its
+        coefficients.
 
         Its largest coefficient is real and positive. For ±M it is the one of +M; the
         other is its reflection f(ξ1, -ξ2, -α).
         """
         basis, mode = self._basis, self._modes[i]
         vector = normalised(mode.vector)
+        if isinstance(basis, SmoothDiscretisation):
+            check_smooth_grid(grid)
         return basis.values(vector, mode.sector, mode.truncation, grid)
 
-    def density_mode(self, i: int, grid: PhaseSpaceGrid) -> Complex:
+    def density_mode(self, i: int, grid: AnyGrid) -> Complex:
         """p_S h with L* h = λ h, h of norm 1: the mode of the density itself.
+
+        Of a smooth fibre there is no p_S of a closed form: q with L* q = λ q, its
+        coefficients of norm 1, and for ±M the one of -M.
 
         p_S + ε Re(density_mode · exp(λ s)) solves (7) on a fixed belt. There h is the
         eigenfunction with α turned by π; on a moving belt it is a function of its own,
@@ -125,7 +135,11 @@ class Spectrum(Saved):
         """
         basis, mode = self._basis, self._modes[i]
         left = normalised(left_vector(basis, mode))
+        if isinstance(basis, SmoothDiscretisation):
+            check_smooth_grid(grid)
+            return basis.dual_values(left, mode.sector, mode.truncation, grid)
         h = basis.values(left, mode.sector, mode.truncation, grid)
+        assert isinstance(self.model, LayDownModel)
         reference: Complex = h * self.model.equilibrium(*grid.plane())[:, :, None]
         return reference
 
@@ -161,43 +175,49 @@ class Spectrum(Saved):
 @recorded()
 @one_blas_thread()
 def spectrum(
-    model: LayDownModel,
+    model: FibreModel,
     n_eigenvalues: int = 6,
     *,
-    tolerance: float = 1e-10,
+    tolerance: float | None = None,
     sectors: Iterable[Sector] | None = None,
     memory_limit: int | None = None,
-    work_limit: float = DEFAULT_WORK,
+    work_limit: float | None = None,
 ) -> Spectrum:
     """The rightmost eigenvalues of the generator of (9) in L²(μ), other than 0.
 
     L f = (τ + v e₁)·∇f - ∇B·τ⊥ ∂_α f + (A²/2) ∂_αα f by Galerkin projection on
-    polynomials in ξ times harmonics of α, sector by sector. All eigenvalues of a
-    truncation right of a line are found by overlapping discs along the imaginary axis;
-    those that move from one truncation to the next are spurious or not resolved, the
-    others are followed through growing bases until they stand still.
+    polynomials in ξ times harmonics of α, sector by sector; of a smooth fibre that of
+    (23), L f = τ·∇f + κ ∂_α f - (κ + ∇B·τ⊥)/R ∂_κ f + (K²/2) ∂_κκ f, in the frame of
+    the fibre. All eigenvalues of a truncation right of a line are found by overlapping
+    discs along the imaginary axis; those that move from one truncation to the next are
+    spurious or not resolved, the others are followed through growing bases until they
+    stand still.
 
     Not proved but measured: that no mode is lost in the sectors of large |M| and at
     the high frequencies where the search ends (see `fpsolve.spectral.survey`).
 
     Parameters
     ----------
-    model : LayDownModel
+    model : LayDownModel or SmoothLayDownModel
         Noise A > 0; a quadratic potential on a belt at rest or of constant speed, or
-        any isotropic one on a fixed belt.
+        any isotropic one on a fixed belt. A smooth fibre: an isotropic quadratic
+        potential on a fixed belt.
     n_eigenvalues : int
         How many; a complex pair counts as two, ±M as one.
-    tolerance : float
-        Largest error of every eigenvalue relative to its rate -Re λ, at least 1e-13.
+    tolerance : float, optional
+        Largest error of every eigenvalue relative to its rate -Re λ, at least 1e-13;
+        by default 1e-10, of a smooth fibre 1e-6.
         Close to a double eigenvalue rounding limits the accuracy to about 1e-8; then
         `errors` says so and no exception is raised.
     sectors : iterable of Sector, optional
         Search in these only.
     memory_limit : int, optional
-        Bytes for the largest basis; by default 256 MiB or what is available.
-    work_limit : float
-        Entries of factors that may be gone through, about two nanoseconds each. Bases
-        and their number of eigenvalues near the axis grow as the noise falls.
+        Bytes for the largest basis; by default 256 MiB, of a smooth fibre 2 GiB, or
+        what is available.
+    work_limit : float, optional
+        Entries of factors that may be gone through, one or two nanoseconds each; by
+        default 1e10, of a smooth fibre 2e10. Bases and their number of eigenvalues
+        near the axis grow as the noise falls.
 
     Raises
     ------
@@ -214,18 +234,17 @@ def spectrum(
     [KMW09]_, equation (9); section 3.1.1.
     """
     n = check_integer("n_eigenvalues", n_eigenvalues, 1, MOST)
-    tolerance = check_tolerance(tolerance)
     discretisation = discretisation_for(model)
     check_resolved(model)
     essential = essential_of(model)
     refinement = Refinement(
         discretisation,
         n,
-        tolerance,
+        tolerance_for(model, tolerance),
         Scale.of(model, essential),
-        memory_of(memory_limit),
+        memory_of(memory_limit, model),
         None if sectors is None else checked_sectors(sectors),
-        Work(check_positive("work_limit", work_limit)),
+        work_for(model, work_limit),
     )
     modes: list[Mode] = []
     for mode in refinement.run():
@@ -245,44 +264,6 @@ def spectrum(
         _modes=modes,
         _discretisation=discretisation,
     )
-
-
-def checked_sectors(sectors: Any) -> tuple[Sector, ...]:
-    """The sectors as a tuple; TypeError unless it is a series of them."""
-    known = list(sectors) if isinstance(sectors, Iterable) else []
-    if not known or not all(isinstance(one, Sector) for one in known):
-        raise TypeError(
-            f"`sectors` must be a series of Sector, got {shown(sectors)}; leave it "
-            "out to search in all of them."
-        )
-    return tuple(known)
-
-
-def check_tolerance(tolerance: float) -> float:
-    """The tolerance as a float, checked."""
-    tolerance = check_real("tolerance", tolerance)
-    if not FINEST <= tolerance <= 0.1:
-        raise ValueError(
-            f"`tolerance` must lie in [{FINEST:g}, 0.1], got {tolerance:g}; double "
-            "precision leaves no more digits."
-        )
-    return tolerance
-
-
-def memory_of(limit: int | None) -> int:
-    """Bytes for the largest basis."""
-    if limit is None:
-        return min(DEFAULT_MEMORY, int(allowed_memory()))
-    return check_integer("memory_limit", limit, 1)
-
-
-def essential_of(model: LayDownModel) -> float | None:
-    """Right end of the essential spectrum, None without one."""
-    if isinstance(model.potential, QuadraticPotential) or not model.potential.isotropic:
-        return None
-    from fpsolve.spectral.bases.essential import asymptotic_slope, essential_threshold
-
-    return essential_threshold(asymptotic_slope(model.potential), model.noise)
 
 
 def normalised(vector: Complex) -> Complex:

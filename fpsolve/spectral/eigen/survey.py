@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csc_array
 
 from fpsolve._support.arrays import Complex
-from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.fibre import FibreModel
 from fpsolve.spectral.bases.choice import orbit_radius
 from fpsolve.spectral.bases.sectors import Discretisation, Sector, Truncation
 from fpsolve.spectral.eigen.eigenvalues import ShiftedInverse, neighbour
@@ -109,10 +109,10 @@ class Scale:
     limit: float = math.inf
 
     @classmethod
-    def of(cls, model: LayDownModel, essential: float | None) -> Scale:
+    def of(cls, model: FibreModel, essential: float | None) -> Scale:
         """From the circular orbit, r B'(r) = 1, and both limits of the noise."""
         frequency = 1 / orbit_radius(model.potential)
-        slow = min(model.diffusivity, (frequency / model.noise) ** 2)
+        slow = min(0.5 * model.noise**2, (frequency / model.noise) ** 2)
         limit = math.inf if essential is None else (1 - NEAR_ESSENTIAL) * -essential
         return cls(frequency, slow, limit)
 
@@ -195,11 +195,11 @@ def half_chord(radius: float, reach: float) -> float:
 class Search:
     """All eigenvalues of one sector with a rate below a cut, by overlapping discs.
 
-    The n eigenvalues nearest to a shift fill a disc in which there are no others. Discs
-    around shifts along the imaginary axis, each reaching into the one before, cover the
-    strip 0 < rate < cut from frequency 0 up to |M| + 3 times that of the circular
-    orbit, and beyond until a stretch of 1.5 such frequencies is empty. The matrix is
-    real, so the lower half plane follows.
+    The n eigenvalues nearest to a shift fill a disc without others. Discs around shifts
+    along the imaginary axis, each reaching into the one before, cover the strip 0 <
+    rate < cut from frequency 0 up to |M| + 3 times that of the circular orbit, and
+    beyond until a stretch of 1.5 such frequencies is empty. The matrix is real, so the
+    lower half plane follows.
     """
 
     def __init__(
@@ -212,7 +212,7 @@ class Search:
     ) -> None:
         self.sector, self.truncation, self.scale = sector, truncation, scale
         self.work = work
-        self.on_edge = discretisation.on_edge
+        self.basis = discretisation
         self.matrix: csc_array = discretisation.matrix(sector, *truncation)
         self.modes: list[Mode] = []
         self.chord = math.inf
@@ -243,7 +243,8 @@ class Search:
         """Search around one shift; half the length of the strip that it covers."""
         # In the middle of the strip, once it is known how wide it is.
         middle = 0.1 * self.scale.rate if math.isinf(self.cut) else -self.cut / 2
-        inverse = ShiftedInverse(self.matrix, complex(middle, frequency), self.work)
+        shift = complex(middle, frequency)
+        inverse = ShiftedInverse(self.matrix, shift, self.work, self.basis.ordering)
         if math.isfinite(self.cut) and (frequency > 0 or not self.sector.has_constants):
             # Most of the axis is far from everything, which is seen at little cost.
             empty = EMPTY * inverse.distance()
@@ -284,11 +285,11 @@ class Search:
         tiny = SAME * (np.abs(values) + self.scale.rate)
         new = inside & (values.imag >= 0)
         if self.sector.has_constants:
-            new &= np.abs(values) > SAME * self.scale.rate
+            new &= np.abs(values) > self.basis.zero * self.scale.rate
         if known.size:
             new &= np.abs(values[:, None] - known).min(axis=1) > tiny
         for i in np.flatnonzero(new):
-            if self.on_edge(vectors[:, i], self.sector, self.truncation):
+            if self.basis.on_edge(vectors[:, i], self.sector, self.truncation):
                 continue
             # -0.0 would print as a conjugate.
             value = complex(values[i].real, abs(values[i].imag))

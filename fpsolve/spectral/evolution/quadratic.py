@@ -12,7 +12,7 @@ from fpsolve.model.potentials.quadratic import QuadraticPotential
 __all__ = ["check_model", "checked_tolerance", "quadratic"]
 
 
-def check_model(model: LayDownModel) -> None:
+def check_model(model: Any) -> None:
     """Raise unless the expansion solves the model."""
     laydown.check_model(model)
     quadratic(model)

@@ -92,4 +92,6 @@ class SpectralSolution(WithSeries, Saved):
     @cached_property
     def steady_state(self) -> SpectralSteadyState:
         """The stationary density that p tends to, with moments and their errors."""
-        return spectral_steady_state(self.model, tolerance=self.tolerance)
+        found = spectral_steady_state(self.model, tolerance=self.tolerance)
+        assert isinstance(found, SpectralSteadyState)
+        return found

@@ -16,7 +16,7 @@ from fpsolve.model.laydown import LayDownModel
 from fpsolve.model.potentials.potential import Potential
 from fpsolve.model.potentials.quadratic import QuadraticPotential
 from fpsolve.paths.laws import GaussianLaw
-from fpsolve.spectral.eigen.spectrum import check_tolerance
+from fpsolve.spectral.eigen.settings import check_tolerance
 from fpsolve.studies.arguments import chosen_parts, noises_of
 from fpsolve.studies.constants.poincare import poincare_constant, require_confining
 from fpsolve.studies.observables import Observable, functions_of
