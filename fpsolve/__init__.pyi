@@ -86,6 +86,8 @@ from .spectral.evolution.steady import SpectralSteadyState as SpectralSteadyStat
 from .spectral.evolution.steady import spectral_steady_state as spectral_steady_state
 from .studies.suggested_grid import suggest_grid as suggest_grid
 from .web.lay_web import lay_web as lay_web
+from .web.pattern import MeanPattern as MeanPattern
+from .web.pattern import mean_pattern as mean_pattern
 from .web.spectrum import WebSpectrum as WebSpectrum
 from .web.spectrum import web_spectrum as web_spectrum
 from .web.stream_web import stream_web as stream_web

@@ -98,8 +98,7 @@ def periodic_state(
     tolerance : float
         Residual to reach.
     n_phases : int
-        Phases at which the density is kept; even, so that half of them tell what the
-        others add.
+        Phases at which the density is kept, at least 4.
     boundary_tolerance : float
         Largest share of mass in the outermost cells, at every phase.
     error_tolerance : float
@@ -132,7 +131,7 @@ def periodic_state(
     remedy_text = "make one by LayDownModel(potential, noise, curve)"
     check_kind("model", model, FibreModel, remedy_text)
     period = check_periodic(model)
-    n_phases = checked_phases(n_phases)
+    n_phases = int(check_integer("n_phases", n_phases, FEWEST_PHASES))
     first = None if ds is None else checked_step(ds)
     tolerance = check_tolerance("tolerance", tolerance)
     error_tolerance = check_tolerance("error_tolerance", error_tolerance)
@@ -162,17 +161,6 @@ def periodic_state(
     return result
 
 
-def checked_phases(n_phases: Any) -> int:
-    """The number of phases; ValueError unless it is even and large enough."""
-    number = int(check_integer("n_phases", n_phases, FEWEST_PHASES))
-    if number % 2:
-        raise ValueError(
-            f"`n_phases` must be even, got {number}; half of them tell what the "
-            "others add."
-        )
-    return number
-
-
 def remember_translations(scheme: Any) -> None:
     """Let the scheme keep the weights of all translations of a period."""
     translate, cells = scheme.translate, math.prod(scheme.grid.shape[2:])
@@ -195,10 +183,19 @@ def with_errors(scheme: Any, found: Refined, period: float) -> PeriodicState:
         ds=found.first.ds,
         n_applications=found.n_applications,
         phase_errors=np.array([one[DENSITY] for one in sums]),
+        plane_errors=on_the_plane(scheme.grid, found),
         errors={part: max(parts[part][DENSITY] for parts in each) for part in each[0]},
         moment_errors={name: np.array([one[name] for one in sums]) for name in names},
         model=scheme.model,
     )
+
+
+def on_the_plane(grid: Any, found: Refined) -> Array:
+    """∫ dα (and dκ) of the fields like errors of step, grid and iteration."""
+    fields = (found.phases.step, found.grid_error, found.phases.iteration)
+    width = math.prod(grid.spacing[2:])
+    axes = tuple(range(3, 1 + len(grid.shape)))
+    return np.stack([field.sum(axis=axes) * width for field in fields])
 
 
 def errors_at(scheme: Any, found: Refined, j: int) -> dict[str, Mapping[str, float]]:

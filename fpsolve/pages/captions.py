@@ -65,8 +65,8 @@ CAPTIONS = {
         "Map of the stationary density and curve over the angle",
     ),
     "periodic-state/phases": (
-        "The density over the plane at four phases of the period; white: contours of "
-        "c exp(-B). Below: E ξ and E τ over the period.",
+        "Above: the density over the plane at four phases of the period; white: "
+        "contours of c exp(-B). Below: E ξ and E τ over the period.",
         "Maps of the density at four phases and curves of its means",
     ),
     "spectral/series": (

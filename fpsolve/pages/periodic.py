@@ -27,6 +27,7 @@ def section(result: PeriodicState, source: str) -> Section:
     """Return the section of a page about a time-periodic density."""
     told = ", ".join(f"{name} {size:.1e}" for name, size in result.errors.items())
     said = f"Estimated L1 error at every phase: {result.error:.2g} ({told})."
+    tone = "good" if result.error <= _SMALL else "warning"
     items = [
         *model_facts(result.model),
         ("period", f"P = {result.period:.6g}, {result.s.size} phases"),

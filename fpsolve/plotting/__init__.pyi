@@ -20,6 +20,7 @@ from .marginals import plot_marginals as plot_marginals
 from .moments import plot_moments as plot_moments
 from .movie import movie as movie
 from .overview import plot_overview as plot_overview
+from .pattern import plot_pattern as plot_pattern
 from .periodic import plot_periodic_state as plot_periodic_state
 from .rates import plot_asymptotic_variance as plot_asymptotic_variance
 from .rates import plot_inverse_decay_rate as plot_inverse_decay_rate

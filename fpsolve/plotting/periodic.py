@@ -8,7 +8,7 @@ from fpsolve._support.arrays import Array
 from fpsolve._support.checks import check_kind
 from fpsolve.density.periodic.result import PeriodicState
 from fpsolve.plotting.maps import N_MAPS, draw_density, draw_row
-from fpsolve.plotting.style import COLOURS, PAGE, drawing, parameters
+from fpsolve.plotting.style import LINES, PAGE, drawing, parameters
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -45,9 +45,7 @@ def plot_periodic_state(result: PeriodicState) -> Figure:
             (position, r"$E\,\xi_{}$", ("mean_xi1", "mean_xi2")),
             (direction, r"$E\,\tau_{}$", ("mean_cos_alpha", "mean_sin_alpha")),
         ):
-            for k, (name, colour) in enumerate(
-                zip(names, COLOURS.values(), strict=False)
-            ):
+            for k, (name, colour) in enumerate(zip(names, LINES, strict=False)):
                 label = words.replace("{}", str(k + 1))
                 axes.plot(result.s, moments[name], color=colour, label=label)
             axes.set(xlabel=r"$s$", xlim=(0.0, result.period))

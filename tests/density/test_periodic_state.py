@@ -1,4 +1,4 @@
-"""Densities that come back every period: identities, limits, errors, refusals."""
+"""Densities that come back every period: identities, limits, paths and refusals."""
 
 import math
 import warnings
@@ -259,7 +259,6 @@ def test_arguments_that_cannot_work_are_named():
 
     refused("`model` must be a FibreModel", TypeError, model="model")
     refused("`grid` is needed with a model", TypeError, grid=None)
-    refused("`n_phases` must be even, got 7", n_phases=7)
     refused("`n_phases` must be at least 4, got 2", n_phases=2)
     refused("`n_phases` must be an integer", TypeError, n_phases=8.5)
     refused("`tolerance` must be positive, got nan", tolerance=math.nan)

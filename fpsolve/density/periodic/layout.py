@@ -57,6 +57,8 @@ PERIODIC = Layout(
     Variable("s", ("s",), "arclength s within the period", increasing=True),
     OnGrid(grid_from_dict, "periodic density p(ξ₁, ξ₂, α; s)"),
     Variable("density_l1_error", ("s",), "estimated L¹ error of p", "phase_errors"),
+    Variable("plane_error", ("plane_part", "s", "xi1", "xi2"),
+             "estimated error of ∫ p dα by step, grid and iteration", "plane_errors"),
     Named("part_error", "part", "parts of the largest of these", "errors"),
     Variable("residual", (), "L¹ rate at which p changes from period to period",
              kind=float),

@@ -44,6 +44,9 @@ class PeriodicState(Saved):
     errors : dict of float
         Its parts, each where it is largest: "step", "grid", "box" and "iteration" as
         those of `SteadyState`; of a smooth fibre "curvature" as well.
+    plane_errors : ndarray, shape (3, n, n1, n2)
+        The estimated errors "step", "grid" and "iteration" as fields, signed and
+        integrated over the angle, for what is integrated against the density.
     moment_errors : dict of ndarray, shape (n,)
         The same estimate for every one of `moments`.
     model : LayDownModel or SmoothLayDownModel
@@ -64,6 +67,7 @@ class PeriodicState(Saved):
     ds: float
     n_applications: int
     phase_errors: Array
+    plane_errors: Array
     errors: Mapping[str, float] = field(default_factory=dict)
     moment_errors: Mapping[str, Array] = field(default_factory=dict)
     model: FibreModel | None = None
