@@ -140,8 +140,8 @@ CAPTIONS = {
         "Fibres of the web in grey, denser places darker",
     ),
     "web/mass": (
-        "Mass per area of every pixel, or laid length per area without a titer; the "
-        "densest one pixel in two hundred shares one colour.",
+        "Mass per area of every pixel, or laid length where no titer is known; the "
+        "densest pixel in two hundred shares one colour.",
         "Map of the mass per area",
     ),
     "web/variation": (

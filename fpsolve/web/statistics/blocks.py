@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -11,21 +11,21 @@ from numpy.typing import NDArray
 
 from fpsolve._support.arrays import Array
 from fpsolve._support.checks import check_positive
-from fpsolve.web.statistics.correlation import correlation_lengths
+from fpsolve.web.statistics.correlation import memories
 
 __all__ = ["FEWEST_BLOCKS", "Blocks", "choose_blocks", "cut"]
 
 # Of fewer, no standard error is worth its name: Student's t(2) already covers 95 % at
 # 4.3 standard errors only.
 FEWEST_BLOCKS = 4
-# Aimed at where the web allows them: the error is then known to 9 %, and longer blocks
-# are more independent.
-_BLOCKS = 64
+# Aimed at where the web allows them: the error is then known to 18 %, for which the
+# quantiles of Student's law make up, and longer blocks are more independent.
+_BLOCKS = 16
 # Relative; what rounding makes of the number of blocks.
 _ROUNDING = 1e-9
-# Sides of a block in correlation lengths. Cells that are independent of each other are
-# blocks themselves: only what exceeds the cell counts.
-_CORRELATION_LENGTHS = 4.0
+# Sides of a block in correlation lengths, where neighbours share an eighth of what is
+# in a block. What they share is made up for.
+_CORRELATION_LENGTHS = 2.0
 
 
 @dataclass(frozen=True)
@@ -40,11 +40,15 @@ class Blocks:
         Blocks in cross and machine direction.
     side : float
         Side that was aimed at.
+    inflation : float
+        By which the variance of a mean over the web exceeds that of independent
+        blocks: those of side D along one axis give 1 - (ℓ - x)/(2 D) of it.
     """
 
     cells: tuple[int, int]
     counts: tuple[int, int]
     side: float
+    inflation: float = 1.0
 
     @property
     def n_blocks(self) -> int:
@@ -84,32 +88,34 @@ class Blocks:
 
 
 def choose_blocks(
-    means: Array, cell: float, block: float | None, shortest: float = 0.0
+    field: Array, cell: float, block: float | None, shortest: float = 0.0
 ) -> Blocks:
-    """Return blocks of four correlation lengths ℓ, x + 4(ℓ - x), more where 64 fit.
+    """Return blocks of two correlation lengths of a field, longer where 16 fit.
 
     Parameters
     ----------
-    means : array
-        Means of the cells, cross × machine direction.
+    field : array
+        What is averaged, cross × machine direction.
     cell : float
-        Side of a cell.
+        Side x of a cell.
     block : float, optional
-        Side of a block instead.
+        Side of a block instead, of which all are taken for independent.
     shortest : float
         What a block must hold, such as the longest wave that is measured.
     """
-    cells, extents = means.shape, cell * np.array(means.shape)
+    cells = field.shape
     if block is not None:
         side = max(check_positive("block", block), cell)
         return cut(cells, cell, (side, side))
-    balanced = math.sqrt(float(np.prod(extents)) / _BLOCKS)
+    balanced = cell * math.sqrt(field.size / _BLOCKS)
     longest = max(balanced, shortest, cell)
-    lengths = correlation_lengths(means, cell)
-    cross, machine = (
-        max(longest, cell + _CORRELATION_LENGTHS * (one - cell)) for one in lengths
-    )
-    return cut(cells, cell, (cross, machine))
+    # Cells that are independent of each other are blocks themselves: what exceeds
+    # a cell counts, or one of the bins in which correlations are looked for.
+    memory = memories(field, cell)
+    sides = [max(longest, cell + _CORRELATION_LENGTHS * one) for one in memory]
+    blocks = cut(cells, cell, (sides[0], sides[1]))
+    kept = [1.0 - one / (2.0 * side) for one, side in zip(memory, sides, strict=True)]
+    return replace(blocks, inflation=1.0 / (kept[0] * kept[1]))
 
 
 def cut(cells: Any, cell: float, sides: tuple[float, float]) -> Blocks:

@@ -9,7 +9,6 @@ import numpy as np
 
 from fpsolve._support.arrays import Array, check_numbers
 from fpsolve._support.checks import shown
-from fpsolve.web.statistics.blocks import choose_blocks
 from fpsolve.web.statistics.estimate import Estimate, Estimates
 from fpsolve.web.statistics.fields import check_density
 from fpsolve.web.statistics.jackknife import estimate
@@ -39,8 +38,7 @@ def cloudiness(
     band : pair of float, or sequence of pairs
         Shortest and longest wavelength, 0 ≤ λ₁ < λ₂ ≤ ∞.
     block : float, optional
-        Side of the blocks; by default at least λ₂ and four correlation lengths of the
-        part of the web that lies in the band.
+        Side of the blocks; by default at least λ₂, and as `coefficient_of_variation`.
 
     Returns
     -------
@@ -93,8 +91,8 @@ class _Waves:
         part = idctn(waves, norm="ortho")
         # No wave is longer than twice the web.
         longest = min(longest, 2.0 * self.pixel * max(self.density.shape))
-        blocks = choose_blocks(part, self.pixel, block, longest)
-        found = estimate(_relative_power, [part**2, self.density], blocks)
+        fields = [part**2, self.density]
+        found = estimate(_relative_power, fields, self.pixel, block, longest)
         scale = self.density.size * self.density.mean() ** 2
         return _at_least(found, _gaussian_error(waves) / scale)
 

@@ -4,53 +4,62 @@ from __future__ import annotations
 
 import numpy as np
 
-from fpsolve._support.arrays import Array
+from fpsolve._support.arrays import Array, Complex
 
-__all__ = ["correlation_lengths"]
+__all__ = ["memories", "memory"]
 
 # Fewer cells along an axis say nothing about a correlation along it.
 _FEWEST_CELLS = 4
-# Of the largest mean; less is what rounding leaves of equal cells.
+# Bins of a series, at most.
+_BINS = 32
+# Of the largest; less is what rounding leaves of equal cells.
 _ROUNDING = 1e-13
-# Standard errors of an autocorrelation of nothing, below which it counts as noise.
-_NOISE = 2.0
 
 
-def correlation_lengths(means: Array, cell: float) -> tuple[float, float]:
-    """ℓ = x (1 + 2 Σ_h ρ(h x)²) in cross and machine direction, x the side of a cell.
+def memories(field: Array, cell: float) -> tuple[float, float]:
+    """ℓ - x in cross and machine direction, of the means of a field over the other one.
 
-    Second moments of a stationary Gaussian field over an interval D have the relative
-    variance of D/ℓ independent values. The sum ends where ρ is lost in its noise.
-    Rows and columns lose their mean first: a strip is a pattern and no memory.
+    Means over a whole width are what a mean over the web is made of. Of single cells
+    the noise hides how long they remember, and a strip, which is a pattern, looks like
+    a memory along itself.
 
     Parameters
     ----------
-    means : array
-        Means of the cells, cross × machine direction.
+    field : array
+        Cross × machine direction.
     cell : float
         Side of a cell.
     """
-    centred = means - means.mean()
-    random = centred - centred.mean(axis=0) - centred.mean(axis=1)[:, None]
-    random[np.abs(random) <= _ROUNDING * np.abs(means).max()] = 0.0
-    return _length(random, cell), _length(random.T, cell)
+    cross, machine = (field.mean(axis=axis)[:, None] for axis in (1, 0))
+    return memory(cross, cell), memory(machine, cell)
 
 
-def _length(random: Array, cell: float) -> float:
-    """Return ℓ along the first axis; one cell where it is short, or all are equal."""
-    n = random.shape[0]
-    variance = float(np.mean(random**2))
-    if n < _FEWEST_CELLS or not variance > 0:
-        return cell
-    rho = _autocovariance(random)[1 : n // 2 + 1] / variance
-    lost = rho < _NOISE / np.sqrt(random.size)
-    last = int(np.argmax(lost)) if lost.any() else len(rho)
-    return cell * float(1.0 + 2.0 * np.sum(rho[:last] ** 2))
+def memory(series: Array | Complex, cell: float) -> float:
+    """ℓ - x = 2 x Σ_h ρ(h x) of a series in 32 bins of side x: D has D/ℓ values.
 
+    The sum ends where ρ is negative for the first time; what follows is noise, or the
+    other half of a wave. In finer bins the noise of every cell would hide a memory that
+    is weak and long, and end the sum early.
 
-def _autocovariance(random: Array) -> Array:
-    """Return the mean product at every lag along the first axis."""
-    n = random.shape[0]
-    waves = np.fft.rfft(random, 2 * n, axis=0)
-    products = np.fft.irfft(np.sum(np.abs(waves) ** 2, axis=1), 2 * n)[:n]
-    return np.asarray(products / (random.shape[1] * np.arange(n, 0, -1)))
+    Parameters
+    ----------
+    series : array
+        Along the first axis; products are averaged over the second one.
+    cell : float
+        Side of a cell.
+    """
+    n = min(len(series), _BINS)
+    starts = np.arange(n) * len(series) // n
+    sizes = np.diff(np.append(starts, len(series)))[:, None]
+    cell *= len(series) / n
+    series = np.add.reduceat(series, starts, axis=0) / sizes
+    centred = series - series.mean(axis=0)
+    variance = float(np.mean(np.abs(centred) ** 2))
+    if n < _FEWEST_CELLS or not variance > (_ROUNDING * np.abs(series).max()) ** 2:
+        return 0.0
+    waves = np.fft.fft(centred, 2 * n, axis=0)
+    products = np.fft.ifft(np.sum(np.abs(waves) ** 2, axis=1)).real[:n]
+    rho = products[1:] / products[0]
+    negative = rho < 0
+    last = int(np.argmax(negative)) if negative.any() else n - 1
+    return 2.0 * cell * float(np.sum(rho[:last]))

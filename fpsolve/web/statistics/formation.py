@@ -54,10 +54,10 @@ def formation_number(
     ----------
     [Deng94]_.
     """
-    side, fields, blocks = measured_zones(length_density, pixel, zone, block)
+    side, fields = measured_zones(length_density, pixel, zone)
 
     def formation(means: Array) -> Array:
         mean = means[..., 0] + means[..., 2]
         return np.asarray(relative_variance(means) * mean * side / STRAIGHT_FIBRES)
 
-    return estimate(formation, fields, blocks)
+    return estimate(formation, fields, side, block)

@@ -8,8 +8,9 @@ from collections.abc import Callable
 import numpy as np
 
 from fpsolve._support.arrays import Array
-from fpsolve.web.statistics.blocks import FEWEST_BLOCKS, Blocks
+from fpsolve.web.statistics.blocks import FEWEST_BLOCKS, choose_blocks
 from fpsolve.web.statistics.estimate import Estimate
+from fpsolve.web.statistics.influence import influence
 
 __all__ = ["estimate", "jackknife"]
 
@@ -57,12 +58,30 @@ def jackknife(
 
 
 def estimate(
-    function: Callable[[Array], Array], fields: list[Array], blocks: Blocks
+    function: Callable[[Array], Array],
+    fields: list[Array],
+    cell: float,
+    block: float | None,
+    shortest: float = 0.0,
 ) -> Estimate:
-    """Return f(means of the fields) as one number with its standard error."""
+    """Return f(means of the fields) as one number with its standard error.
+
+    Parameters
+    ----------
+    function : callable
+        f of an array of means on its last axis.
+    fields : list of array
+        Cross × machine direction.
+    cell : float
+        Side of a cell of the fields.
+    block : float, optional
+        Side of the blocks; by default as the influence of the cells on f remembers.
+    shortest : float
+        What a block must hold.
+    """
+    blocks = choose_blocks(influence(function, fields), cell, block, shortest)
     sums = np.stack([blocks.sums(field) for field in fields], axis=-1)
-    value, error = jackknife(function, sums, blocks.sizes)
+    value, errors = jackknife(function, sums, blocks.sizes)
+    error = math.sqrt(blocks.inflation) * float(errors)
     n_samples = math.prod(blocks.cells)
-    return Estimate(
-        float(value), float(error), blocks.n_blocks, n_samples, blocks.reason
-    )
+    return Estimate(float(value), error, blocks.n_blocks, n_samples, blocks.reason)

@@ -63,7 +63,7 @@ class Measured:
         zone : float or sequence of float
             Side of a zone, or many; at least the pixel, at most the web.
         block : float, optional
-            Side of the blocks; by default four correlation lengths, or more.
+            Side of the blocks; by default two correlation lengths, or more.
 
         Returns
         -------

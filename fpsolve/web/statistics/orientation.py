@@ -52,7 +52,7 @@ def machine_cross_ratio(
         ⟨τ⊗τ⟩ of every pixel, of shape (cross, machine, 2, 2), index 0 the machine
         direction; NaN or anything else where there is no fibre.
     block : float, optional
-        Side of the blocks; by default four correlation lengths of m ⟨τ₁² - τ₂²⟩.
+        Side of the blocks; by default as for `coefficient_of_variation`.
 
     Returns
     -------
@@ -68,8 +68,7 @@ def machine_cross_ratio(
     density, pixel = check_density(length_density, pixel)
     tensor = check_orientation(orientation, density)
     parts = [density * tensor[..., axis, axis] for axis in (0, 1)]
-    blocks = choose_blocks(parts[0] - parts[1], pixel, block)
-    return estimate(_ratio, parts, blocks)
+    return estimate(_ratio, parts, pixel, block)
 
 
 def orientation_rose(
@@ -112,6 +111,7 @@ def orientation_rose(
     blocks = choose_blocks(uneven, pixel, block)
     lengths = _lengths_by_angle(density, tensor, blocks, n_bins)
     values, errors = jackknife(_shares, lengths, blocks.sizes)
+    errors *= np.sqrt(blocks.inflation)
     width = np.pi / n_bins
     n_samples = int(np.count_nonzero(density))
     return Estimates.of(

@@ -10,7 +10,7 @@ import numpy as np
 from fpsolve._support.arrays import Array, Complex
 from fpsolve._support.checks import check_one_of, check_positive
 from fpsolve.web.statistics.blocks import FEWEST_BLOCKS, Blocks, cut
-from fpsolve.web.statistics.correlation import correlation_lengths
+from fpsolve.web.statistics.correlation import memory
 from fpsolve.web.statistics.estimate import Estimate
 from fpsolve.web.statistics.fields import check_density
 from fpsolve.web.statistics.jackknife import jackknife
@@ -18,7 +18,7 @@ from fpsolve.web.statistics.jackknife import jackknife
 __all__ = ["Strips", "strips"]
 
 # Independent stretches of the web, at most, and their length in correlation lengths.
-_STRETCHES, _CORRELATION_LENGTHS = 64, 4.0
+_STRETCHES, _CORRELATION_LENGTHS = 64, 3.0
 # Frequencies looked at per resolved one: the best is then met to 2 % of its power.
 _OVERSAMPLED = 4
 # Periods that a web must hold, for a period to be one.
@@ -80,7 +80,8 @@ def strips(
         The period, if it is known; by default the strongest is looked for, from two
         pixels to half the web.
     block : float, optional
-        Length of a stretch; by default four correlation lengths, or more.
+        Length of a stretch; by default three correlation lengths of the strongest wave
+        along the strips, and a 64th of the web at least.
 
     Returns
     -------
@@ -96,10 +97,13 @@ def strips(
     check_one_of("direction", direction, ("machine", "cross"))
     if direction == "cross":
         density = density.T
+    search = _Search(density.shape[0], pixel, period)
+    start = search.strongest(density.mean(axis=1))
+    if block is None:
+        waves = search.wave(density.T, start)[:, None]
+        block = pixel + _CORRELATION_LENGTHS * memory(waves, pixel)
     profiles, blocks = _profiles(density, pixel, block)
     sizes = blocks.sizes
-    search = _Search(density.shape[0], pixel, period)
-    start = search.strongest(profiles.sum(axis=0) / sizes.sum())
     noise, p_value = _against_noise(profiles / sizes[:, None], search, start)
     values, errors = jackknife(
         lambda means: search.measured(means, start, noise), profiles, sizes
@@ -111,16 +115,11 @@ def strips(
     return Strips(found[0], found[1], found[2], p_value, direction)
 
 
-def _profiles(
-    density: Array, pixel: float, block: float | None
-) -> tuple[Array, Blocks]:
+def _profiles(density: Array, pixel: float, block: float) -> tuple[Array, Blocks]:
     """Return the summed profile of every stretch, and the stretches as blocks."""
     n = density.shape[1]
-    length = correlation_lengths(density, pixel)[1]
-    side = max(pixel * n / _STRETCHES, _CORRELATION_LENGTHS * length)
-    if block is not None:
-        side = check_positive("block", block)
-    # One pixel per column: the mean over the profile.
+    side = max(check_positive("block", block), pixel * n / _STRETCHES)
+    # One cell per column, which holds the whole profile.
     stretches = cut((1, n), pixel, (pixel, max(side, pixel)))
     starts = np.arange(stretches.counts[1]) * n // stretches.counts[1]
     return np.add.reduceat(density, starts, axis=1).T, stretches

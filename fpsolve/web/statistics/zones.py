@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 import numpy as np
 
 from fpsolve._support.arrays import Array, check_finite_numbers
 from fpsolve._support.checks import check_positive
-from fpsolve.web.statistics.blocks import Blocks, choose_blocks
 from fpsolve.web.statistics.estimate import Estimate, Estimates
 from fpsolve.web.statistics.fields import check_density
 from fpsolve.web.statistics.jackknife import estimate
@@ -23,8 +21,6 @@ __all__ = [
     "zone_means",
 ]
 
-# Blocks along a side of a square web for its mean.
-_BLOCKS_ACROSS = 4
 # Relative; what rounding makes of the number of zones, and of an edge of zones that is
 # one of pixels.
 _ROUNDING, _EDGE = 1e-9, 1e-12
@@ -51,8 +47,8 @@ def coefficient_of_variation(
     zone : float or sequence of float
         Side x of a zone, or many, at least the pixel and at most the web.
     block : float, optional
-        Side of the blocks; by default four correlation lengths of the zone means, or
-        more where 64 blocks fit.
+        Side of the blocks; by default two correlation lengths of the influence that
+        zones have on CV, or more where 16 blocks fit.
 
     Returns
     -------
@@ -95,10 +91,7 @@ def mean_density(
     Estimate
     """
     density, pixel = check_density(length_density, pixel)
-    # Products of densities forget sooner than densities do, for which 64 blocks serve.
-    extent = pixel * math.sqrt(density.size)
-    blocks = choose_blocks(density, pixel, block, extent / _BLOCKS_ACROSS)
-    return estimate(lambda means: means[..., 0], [density], blocks)
+    return estimate(lambda means: means[..., 0], [density], pixel, block)
 
 
 def zone_means(density: Array, pixel: float, zone: float) -> Array:
@@ -107,16 +100,15 @@ def zone_means(density: Array, pixel: float, zone: float) -> Array:
 
 
 def measured_zones(
-    length_density: Any, pixel: Any, zone: Any, block: float | None
-) -> tuple[float, list[Array], Blocks]:
-    """Return the side of the zones, what `relative_variance` asks of them, blocks."""
+    length_density: Any, pixel: Any, zone: Any
+) -> tuple[float, list[Array]]:
+    """Return the side of the zones, and what `relative_variance` asks of them."""
     density, pixel = check_density(length_density, pixel)
     side = check_zone(zone, pixel, density.shape)
     means = zone_means(density, pixel, side)
     shift = float(means.mean())
     centred = means - shift
-    fields = [centred, centred**2, np.full(means.shape, shift)]
-    return side, fields, choose_blocks(means, side, block)
+    return side, [centred, centred**2, np.full(means.shape, shift)]
 
 
 def relative_variance(means: Array) -> Array:
@@ -146,8 +138,8 @@ def check_zone(zone: Any, pixel: float, shape: tuple[int, int]) -> float:
 def _variation(
     length_density: Any, pixel: float, zone: Any, block: float | None
 ) -> Estimate:
-    _, fields, blocks = measured_zones(length_density, pixel, zone, block)
-    return _root(estimate(relative_variance, fields, blocks))
+    side, fields = measured_zones(length_density, pixel, zone)
+    return _root(estimate(relative_variance, fields, side, block))
 
 
 def _root(square: Estimate) -> Estimate:
