@@ -88,6 +88,8 @@ from .studies.suggested_grid import suggest_grid as suggest_grid
 from .web.lay_web import lay_web as lay_web
 from .web.pattern import MeanPattern as MeanPattern
 from .web.pattern import mean_pattern as mean_pattern
+from .web.predict import predict_web as predict_web
+from .web.prediction import WebPrediction as WebPrediction
 from .web.spectrum import WebSpectrum as WebSpectrum
 from .web.spectrum import web_spectrum as web_spectrum
 from .web.stream_web import stream_web as stream_web

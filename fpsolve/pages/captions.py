@@ -90,6 +90,10 @@ CAPTIONS = {
         "Eigenvalues in the complex plane, by sector; dashed: where the gap ends.",
         "Eigenvalues in the complex plane",
     ),
+    "web-prediction/zones": (
+        "CV of square zones with errors; dashed: zones that straight fibres cross.",
+        "Curve of the coefficient of variation against the side of the zone",
+    ),
     "rate/integral": (
         "Inverse decay rate ∫ H ds against noise, as in figure 5 of the paper.",
         "Curve of the inverse decay rate against noise",

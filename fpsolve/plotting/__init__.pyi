@@ -22,6 +22,7 @@ from .movie import movie as movie
 from .overview import plot_overview as plot_overview
 from .pattern import plot_pattern as plot_pattern
 from .periodic import plot_periodic_state as plot_periodic_state
+from .predicted_web import plot_predicted_web as plot_predicted_web
 from .rates import plot_asymptotic_variance as plot_asymptotic_variance
 from .rates import plot_inverse_decay_rate as plot_inverse_decay_rate
 from .rates import plot_rates as plot_rates

@@ -26,6 +26,7 @@ from fpsolve.plotting.marginals import plot_marginals
 from fpsolve.plotting.moments import plot_moments
 from fpsolve.plotting.overview import plot_overview
 from fpsolve.plotting.periodic import plot_periodic_state
+from fpsolve.plotting.predicted_web import plot_predicted_web
 from fpsolve.plotting.rates import (
     plot_asymptotic_variance,
     plot_inverse_decay_rate,
@@ -155,6 +156,7 @@ FIGURES: dict[str, Callable[[Any], Figures]] = {
     "check": each(check=(plot_cross_check, always)),
     # Beside the model that they are of.
     "spectrum": each(spectrum=(plot_spectrum, lambda found: found.model is not None)),
+    "web-prediction": each(zones=(plot_predicted_web, always)),
     "rate": each(
         integral=(plot_inverse_decay_rate, known("inverse_decay_rate")),
         rates=(plot_rates, known("gap", "branch_rate")),

@@ -112,6 +112,10 @@ KINDS = {
         "spectra", "fpsolve.spectral.eigen.spectrum:spectrum",
         "fpsolve.spectral.eigen.spectrum:Spectrum",
     ),
+    "web-prediction": Kind(
+        "predicted webs", "fpsolve.web.predict:predict_web",
+        "fpsolve.web.prediction:WebPrediction",
+    ),
     "rate": Kind(
         "rates against the noise",
         "fpsolve.studies.rates.rate_versus_noise:rate_versus_noise", counts="cases",

@@ -127,6 +127,10 @@ MAKERS = {
     ),
     "spectrum": lambda: fp.spectrum(REST, 3, tolerance=1e-4),
     "spectrum, smooth": lambda: fp.spectrum(RESTING, 1, tolerance=1e-3),
+    "web-prediction": lambda: fp.predict_web(
+        fp.LayDownModel(QUADRATIC, 2.0, fp.MovingBelt(0.2)), spacing=0.5,
+        zones=[0.5, 2.0], bands=[(0.5, 2.0)], tolerance=0.05,
+    ),
     "rate": lambda: studies.rate_versus_noise(
         QUADRATIC, [2.0], quick=True, parts=["gap"], workers=0
     ),

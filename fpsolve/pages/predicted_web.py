@@ -1,0 +1,61 @@
+"""The page about a web that was predicted."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from fpsolve.pages.blocks import Block, Facts, Part, Section, Table
+from fpsolve.pages.figures import drawings
+from fpsolve.pages.origin import provenance_part
+from fpsolve.pages.settings import model_facts, model_or_unread
+
+if TYPE_CHECKING:
+    from fpsolve.web.prediction import WebPrediction
+
+__all__ = ["section"]
+
+
+def section(prediction: WebPrediction, source: str) -> Section:
+    """Return the section of a page about a predicted web."""
+    items = [
+        *model_facts(prediction.model),
+        ("distance of the spinning positions", f"{prediction.spacing:g}"),
+        ("positions", prediction.positions),
+        ("laid length per area", f"1/(v d) = {prediction.mean:.6g}"),
+        ("MD/CD", f"{prediction.machine_cross_ratio:.6g}"),
+    ]
+    return Section("Predicted web", source, [
+        Part("Equation", model_or_unread(prediction.model, prediction.provenance)),
+        Part("Parameters", [Facts(items)]),
+        Part("Homogeneity", _tables(prediction)),
+        Part("Figure", drawings(prediction)),
+        provenance_part(prediction.provenance, call=prediction.call),
+    ])  # fmt: skip
+
+
+def _tables(prediction: WebPrediction) -> list[Block]:
+    zones = zip(prediction.zones, prediction.cv, prediction.errors, strict=True)
+    tables: list[Block] = [Table(
+        "Coefficient of variation of square zones.", ("side", "CV", "error"),
+        [(f"{side:g}", f"{cv:.5g}", f"{error:.1e}") for side, cv, error in zones],
+    )]  # fmt: skip
+    bands = [
+        (f"{short:g} to {long:g}", f"{power:.5g}", f"{error:.1e}")
+        for short, long, power, error in zip(
+            prediction.shortest, prediction.longest, prediction.cloudiness,
+            prediction.cloudiness_errors, strict=True,
+        )
+    ]  # fmt: skip
+    if bands:
+        told = "Cloudiness: the part of CV² with wavelengths in a band."
+        tables.append(Table(told, ("wavelengths", "part", "error"), bands))
+    strips = [
+        (f"{prediction.spacing / j:g}", f"{amplitude:.3g}", f"{error:.1e}")
+        for j, (amplitude, error) in enumerate(
+            zip(prediction.strips, prediction.strip_errors, strict=True), start=1
+        )
+    ]
+    if strips:
+        told = "Strips of the mean web, relative to it."
+        tables.append(Table(told, ("period", "amplitude", "error"), strips))
+    return tables

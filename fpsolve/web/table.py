@@ -1,0 +1,159 @@
+"""Ŝ over all wave vectors, from as few solutions as its shape asks for."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import Literal
+
+import numpy as np
+
+from fpsolve._support.arrays import Array
+from fpsolve.spectral.resolvent.basis import Basis
+from fpsolve.spectral.resolvent.fibre_spectrum import fibre_spectrum
+from fpsolve.spectral.resolvent.ladder import Ladder
+from fpsolve.spectral.resolvent.limit import short_wave_limit
+from fpsolve.web.even import EvenNodes
+
+__all__ = ["AXES", "Axis", "SpectrumTable"]
+
+Axis = Literal["along", "across", "shortness", "direction"]
+AXES: tuple[Axis, ...] = ("along", "across", "shortness", "direction")
+# |k1| σ1 and |k2| σ2 up to which the table is a product of wave numbers.
+END = 2.5
+# Nodes to begin with; across they cost little.
+N_NODES: dict[Axis, int] = {"along": 9, "across": 17, "shortness": 9, "direction": 5}
+# For the law of the angle.
+LAW = Basis(16, 12)
+# Graded no further than this share of an interval.
+FINEST = 0.02
+# Of the largest κ Ŝ a part that no zone notices.
+SMALL = 1e-3
+
+
+@dataclass(eq=False)
+class Source:
+    """Ŝ and its error at wave vectors, each computed once.
+
+    Attributes
+    ----------
+    ladder : Ladder
+    tolerance : float
+    """
+
+    ladder: Ladder
+    tolerance: float
+    _known: dict[tuple[float, float], tuple[float, float]] = field(default_factory=dict)
+
+    def __call__(self, k1: Array, k2: Array) -> tuple[Array, Array]:
+        """Values and errors in the shape of `k1`."""
+        pairs = list(zip(k1.ravel().tolist(), k2.ravel().tolist(), strict=True))
+        new = sorted(set(pairs) - self._known.keys())
+        if new:
+            first, second = np.array(new).T
+            found = fibre_spectrum(self.ladder, first, second, self.tolerance)
+            numbers = zip(*(one.tolist() for one in found), strict=True)
+            self._known.update(zip(new, numbers, strict=True))
+        values = np.array([self._known[pair] for pair in pairs])
+        return values[:, 0].reshape(k1.shape), values[:, 1].reshape(k1.shape)
+
+
+@dataclass(frozen=True, eq=False)
+class SpectrumTable:
+    """Ŝ between nodes: inside a rectangle over (k1, k2), outside over (1/κ, cos β).
+
+    Outside, k = κ (cos β/σ1, sin β/σ2), and κ Ŝ is an even function of 1/κ down to 0,
+    where it is the law of the angle. Both are even in their other variable, too.
+
+    Attributes
+    ----------
+    source : Source
+    nodes : dict of EvenNodes
+        By axis.
+    """
+
+    source: Source
+    nodes: dict[Axis, EvenNodes]
+
+    @classmethod
+    def of(cls, ladder: Ladder, tolerance: float) -> SpectrumTable:
+        """With few nodes, where the model has its scales."""
+        model, (sigma1, sigma2) = ladder.model, ladder.scales
+        wide, diffusivity = max(sigma1, sigma2), model.diffusivity
+        # Of about the size of the gap: A²/2 at low noise, 1/(σ² A²) at high noise.
+        rate = diffusivity / (1.0 + 2.0 * (diffusivity * wide) ** 2)
+        ridge = rate * wide / max(abs(model.curve.speed), 1e-300)
+        scales: dict[Axis, tuple[float, float]] = {
+            "along": (END / sigma1, 2.0 * ridge / sigma1),
+            "across": (END / sigma2, END / sigma2),
+            "shortness": (1.0 / END, 1.0 / (diffusivity * wide)),
+            "direction": (1.0, END * ridge),
+        }
+        nodes = {
+            axis: EvenNodes(
+                end, float(np.clip(scale, FINEST * end, end)), N_NODES[axis]
+            )
+            for axis, (end, scale) in scales.items()
+        }
+        return cls(Source(ladder, tolerance), nodes)
+
+    def finer(self, axis: Axis) -> SpectrumTable:
+        """With twice as many nodes along one axis."""
+        return replace(self, nodes=self.nodes | {axis: self.nodes[axis].finer()})
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """Of the rectangle."""
+        return self.nodes["along"].end, self.nodes["across"].end
+
+    @cached_property
+    def inside(self) -> tuple[Array, Array]:
+        """Ŝ and errors at the nodes (k1, k2)."""
+        k1, k2 = np.meshgrid(
+            self.nodes["along"].points, self.nodes["across"].points, indexing="ij"
+        )
+        return self.source(k1, k2)
+
+    @cached_property
+    def outside(self) -> tuple[Array, Array]:
+        """κ Ŝ and errors at the nodes (1/κ, cos β), the last ones at κ = ∞."""
+        shortness = self.nodes["shortness"].points[:-1, None]
+        cosine = self.nodes["direction"].points
+        sigma1, sigma2 = self.source.ladder.scales
+        sine = np.sqrt(1.0 - cosine**2)
+        # In this order, so that a node of a coarser table is the same numbers.
+        values, errors = self.source(
+            cosine / sigma1 / shortness, sine / sigma2 / shortness
+        )
+        law = self._law(cosine / sigma1, sine / sigma2)
+        # What two truncations of the law differ by is part of the error of every node.
+        last = errors[-1:] / shortness[-1]
+        values = np.concatenate([values / shortness, law[None]])
+        return values, np.concatenate([errors / shortness, last])
+
+    @property
+    def share(self) -> float:
+        """The largest error outside, relative to κ Ŝ or to what is small of it."""
+        values, errors = self.outside
+        return float(np.max(errors / np.maximum(values, SMALL * values.max())))
+
+    def _law(self, k1: Array, k2: Array) -> Array:
+        generator = self.source.ladder.generator(LAW)
+        pairs = zip(k1.tolist(), k2.tolist(), strict=True)
+        return np.array([short_wave_limit(generator, pair) for pair in pairs])
+
+    def __call__(self, k1: Array, k2: Array, fewer: Axis | None = None) -> Array:
+        """Ŝ at wave vectors k1, k2 >= 0, of one shape and none of them zero."""
+        sigma1, sigma2 = self.source.ladder.scales
+        within = (k1 <= self.ends[0]) & (k2 <= self.ends[1])
+        result = np.empty(k1.shape)
+        along = self.nodes["along"].at(k1[within], fewer == "along")
+        across = self.nodes["across"].at(k2[within], fewer == "across")
+        result[within] = ((along @ self.inside[0]) * across).sum(axis=1)
+        first, second = k1[~within] * sigma1, k2[~within] * sigma2
+        size = np.hypot(first, second)
+        shortness = self.nodes["shortness"].at(1.0 / size, fewer == "shortness")
+        direction = self.nodes["direction"].at(first / size, fewer == "direction")
+        product = ((shortness @ self.outside[0]) * direction).sum(axis=1)
+        result[~within] = product / size
+        return result
