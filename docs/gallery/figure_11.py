@@ -45,8 +45,10 @@ figure = fp.plotting.plot_pattern(patterns, 25.0, 12.0, list(cases))
 for name, pattern in zip(cases, patterns, strict=True):
     (band, error), (strip, other) = pattern.amplitude(1, 0), pattern.amplitude(0, 1)
     variation, spread = pattern.coefficient_of_variation()
-    print(f"{name}: L = {pattern.length:.2f}, bands {band:.3f} ± {error:.0e}, "
-          f"strips {strip:.3f} ± {other:.0e}, CV {variation:.2f} ± {spread:.0e}")
+    print(
+        f"{name}: L = {pattern.length:.2f}, bands {band:.3f} ± {error:.0e}, "
+        f"strips {strip:.3f} ± {other:.0e}, CV {variation:.2f} ± {spread:.0e}"
+    )
 
 # %%
 # Close nozzles, :math:`d \ll \sigma_2`, leave bands alone, and swinging ones nothing:
