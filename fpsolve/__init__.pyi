@@ -78,6 +78,9 @@ from .spectral.eigen.optimal import optimal_noise as optimal_noise
 from .spectral.eigen.spectrum import Spectrum as Spectrum
 from .spectral.eigen.spectrum import spectrum as spectrum
 from .spectral.evolution.evolution import spectral_solve as spectral_solve
+from .spectral.evolution.smooth_solution import (
+    SmoothSpectralSolution as SmoothSpectralSolution,
+)
 from .spectral.evolution.smooth_steady import (
     SmoothSpectralSteadyState as SmoothSpectralSteadyState,
 )

@@ -73,6 +73,10 @@ CAPTIONS = {
         "Relative entropy and means over s, with estimated errors.",
         "Curves of entropy and means",
     ),
+    "smooth-spectral/series": (
+        "Variances and means over s, with estimated errors.",
+        "Curves of variances and means",
+    ),
     "hydrodynamic-paths/moments": (
         "Means and variances of the paths, with standard errors.",
         "Curves of means and variances",

@@ -20,6 +20,7 @@ PAGES: dict[str, str | Callable[[Any, str], Section]] = {
     "steady-state": "fpsolve.pages.plain:steady_state",
     "periodic-state": "fpsolve.pages.periodic:section",
     "spectral": "fpsolve.pages.plain:spectral",
+    "smooth-spectral": "fpsolve.pages.plain:smooth_spectral",
     "spectral-steady-state": "fpsolve.pages.plain:spectral_steady_state",
     "smooth-spectral-steady-state": "fpsolve.pages.plain:spectral_steady_state",
     "energy-paths": "fpsolve.pages.plain:energy_paths",

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from fpsolve.density.stationary.result import SteadyState
     from fpsolve.reduced.energy.sampling import EnergyPaths
     from fpsolve.reduced.hydrodynamic.sampling import HydrodynamicPaths
+    from fpsolve.spectral.evolution.smooth_solution import SmoothSpectralSolution
     from fpsolve.spectral.evolution.smooth_steady import SmoothSpectralSteadyState
     from fpsolve.spectral.evolution.solution import SpectralSolution
     from fpsolve.spectral.evolution.steady import SpectralSteadyState
@@ -33,6 +34,7 @@ if TYPE_CHECKING:
 __all__ = [
     "energy_paths",
     "hydrodynamic_paths",
+    "smooth_spectral",
     "spectral",
     "spectral_steady_state",
     "steady_state",
@@ -94,14 +96,7 @@ def spectral(solution: SpectralSolution, source: str) -> Section:
         ("largest truncation", f"degree {degree}, {harmonics} harmonics"),
         ("tolerance", f"{solution.tolerance:g}"),
     ]
-    rows = [
-        (f"{solution.s[row]:g}", *(
-            f"{values[row]:.10g} ± {solution.errors[name][row]:.0e}"
-            for name, values in solution.series.items() if name in _SHOWN
-        ))
-        for row in evenly(solution.s.size)
-    ]  # fmt: skip
-    table = Table("Entropy and means with errors.", ("s", *_SHOWN.values()), rows)
+    table = _series("Entropy and means with errors.", solution, _SHOWN)
     return _section("Density by expansion in time", source, solution, [
         Part("Equation", model_or_unread(solution.model, solution.provenance)),
         Part("Parameters", [Facts(items)]),
@@ -109,9 +104,49 @@ def spectral(solution: SpectralSolution, source: str) -> Section:
     ])  # fmt: skip
 
 
+def smooth_spectral(solution: SmoothSpectralSolution, source: str) -> Section:
+    """Return the section of a page about an expansion in time of a smooth model."""
+    degree, curvature, sectors = solution.truncation
+    coupled = f", {sectors} sectors beyond the first" if sectors else ""
+    items = [
+        *model_facts(solution.model),
+        ("arclengths", _span(solution.s)),
+        ("truncation", f"degrees {degree} in ξ, {curvature} in κ{coupled}"),
+        ("tolerance", f"{solution.tolerance:g}"),
+    ]
+    table = _series("Moments with errors.", solution, _SMOOTH_SHOWN)
+    return _section("Moments by expansion in time", source, solution, [
+        Part("Equation", model_or_unread(solution.model, solution.provenance)),
+        Part("Parameters", [Facts(items)]),
+        Part("Numbers", [table]),
+    ])  # fmt: skip
+
+
+def _series(
+    words: str,
+    solution: SpectralSolution | SmoothSpectralSolution,
+    shown: Mapping[str, str],
+) -> Table:
+    """Numbers with their errors over s."""
+    rows = [
+        (f"{solution.s[row]:g}", *(
+            f"{solution.series[name][row]:.10g} ± {solution.errors[name][row]:.0e}"
+            for name in shown
+        ))
+        for row in evenly(solution.s.size)
+    ]  # fmt: skip
+    return Table(words, ("s", *shown.values()), rows)
+
+
 _SHOWN = {
     "relative_entropy": "H", "mean_xi1": "E ξ₁", "mean_xi2": "E ξ₂",
     "mean_cos_alpha": "E cos α", "mean_sin_alpha": "E sin α",
+}  # fmt: skip
+
+
+_SMOOTH_SHOWN = {
+    "mean_xi1": "E ξ₁", "variance_xi1": "Var ξ₁", "variance_xi2": "Var ξ₂",
+    "mean_cos_alpha": "E cos α", "mean_kappa": "E κ", "mean_kappa2": "E κ²",
 }  # fmt: skip
 
 

@@ -36,6 +36,7 @@ from fpsolve.plotting.selection import potential_of
 from fpsolve.plotting.series import (
     plot_energy_paths,
     plot_hydrodynamic_paths,
+    plot_smooth_spectral,
     plot_spectral,
 )
 from fpsolve.plotting.small_noise import plot_small_noise, plot_small_noise_spectrum
@@ -141,6 +142,7 @@ FIGURES: dict[str, Callable[[Any], Figures]] = {
     "steady-state": each(stationary=(plot_steady_state, always)),
     "periodic-state": each(phases=(plot_periodic_state, always)),
     "spectral": each(series=(plot_spectral, always)),
+    "smooth-spectral": each(series=(plot_smooth_spectral, always)),
     # A density on whatever grid is chosen, and none before.
     "spectral-steady-state": each(),
     "smooth-spectral-steady-state": each(),

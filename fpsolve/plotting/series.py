@@ -11,6 +11,7 @@ from fpsolve.plotting.selection import evenly
 from fpsolve.plotting.style import COLOURS, LINES, PAGE, drawing, parameters
 from fpsolve.reduced.energy.sampling import EnergyPaths
 from fpsolve.reduced.hydrodynamic.sampling import HydrodynamicPaths
+from fpsolve.spectral.evolution.smooth_solution import SmoothSpectralSolution
 from fpsolve.spectral.evolution.solution import SpectralSolution
 
 if TYPE_CHECKING:
@@ -18,11 +19,23 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
-__all__ = ["plot_energy_paths", "plot_hydrodynamic_paths", "plot_spectral"]
+__all__ = [
+    "plot_energy_paths",
+    "plot_hydrodynamic_paths",
+    "plot_smooth_spectral",
+    "plot_spectral",
+]
 
 _MEANS = {
     "mean_xi1": r"$E\,\xi_1$", "mean_xi2": r"$E\,\xi_2$",
     "mean_cos_alpha": r"$E\cos\alpha$", "mean_sin_alpha": r"$E\sin\alpha$",
+}  # fmt: skip
+_VARIANCES = {
+    "variance_xi1": r"$\mathrm{Var}\,\xi_1$", "variance_xi2": r"$\mathrm{Var}\,\xi_2$",
+}  # fmt: skip
+_SMOOTH_MEANS = {
+    "mean_xi1": r"$E\,\xi_1$", "mean_xi2": r"$E\,\xi_2$",
+    "mean_cos_alpha": r"$E\cos\alpha$", "mean_kappa": r"$E\,\kappa$",
 }  # fmt: skip
 _MOST_LAWS = 5
 _BINS = 60
@@ -47,6 +60,25 @@ def plot_spectral(solution: SpectralSolution) -> Figure:
             _draw(means, solution.s, solution.series[name], solution.errors[name],
                   colour, label)  # fmt: skip
         means.legend(loc="best")
+    return figure
+
+
+def plot_smooth_spectral(solution: SmoothSpectralSolution) -> Figure:
+    """Variances of ξ, and means, over s; bars: the estimated errors.
+
+    Parameters
+    ----------
+    solution : SmoothSpectralSolution
+    """
+    check_kind("solution", solution, SmoothSpectralSolution, "see `spectral_solve`")
+    with drawing(PAGE, 2.8, parameters(solution)) as figure:
+        for axes, labelled in zip(
+            figure.subplots(1, 2), (_VARIANCES, _SMOOTH_MEANS), strict=True
+        ):
+            for (name, label), colour in zip(labelled.items(), LINES, strict=False):
+                _draw(axes, solution.s, solution.series[name], solution.errors[name],
+                      colour, label)  # fmt: skip
+            axes.legend(loc="best")
     return figure
 
 

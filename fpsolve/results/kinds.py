@@ -80,6 +80,11 @@ KINDS = {
         "expansions in time", "fpsolve.spectral.evolution.evolution:spectral_solve",
         "fpsolve.spectral.evolution.solution:SpectralSolution",
     ),
+    "smooth-spectral": Kind(
+        "expansions in time, of smooth fibres",
+        "fpsolve.spectral.evolution.evolution:spectral_solve",
+        "fpsolve.spectral.evolution.smooth_solution:SmoothSpectralSolution",
+    ),
     "spectral-steady-state": Kind(
         "stationary expansions",
         "fpsolve.spectral.evolution.steady:spectral_steady_state",

@@ -8,28 +8,32 @@ import numpy as np
 
 from fpsolve._support.arrays import Array
 from fpsolve.errors import ToleranceError
-from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.fibre import FibreModel
+from fpsolve.spectral.evolution.smooth_solution import SmoothSpectralSolution
 from fpsolve.spectral.evolution.solution import SpectralSolution
 from fpsolve.spectral.work import Work
 
 __all__ = ["excess", "failure"]
 
+Evolved = SpectralSolution | SmoothSpectralSolution
 
-def worst_errors(result: SpectralSolution) -> Array:
+
+def worst_errors(result: Evolved) -> Array:
     """Largest error at every s, relative where a number is above one."""
     errors = [
         errors / np.maximum(1.0, np.abs(result.series[name]))
         for name, errors in result.errors.items()
     ]
-    return np.asarray(np.max(errors, axis=0))
+    worst: Array = np.max(errors, axis=0)
+    return np.where(np.isnan(worst), np.inf, worst)
 
 
-def excess(result: SpectralSolution) -> float:
+def excess(result: Evolved) -> float:
     """Largest error over what is allowed."""
     return float(worst_errors(result).max()) / result.tolerance
 
 
-def remedy(result: SpectralSolution) -> str:
+def remedy(result: Evolved) -> str:
     """What would help, by where the errors are."""
     met = worst_errors(result) <= result.tolerance
     if met[-1]:
@@ -39,7 +43,7 @@ def remedy(result: SpectralSolution) -> str:
 
 
 def failure(
-    result: SpectralSolution | None, model: LayDownModel, work: Work, tolerance: float
+    result: Evolved | None, model: FibreModel, work: Work, tolerance: float
 ) -> ToleranceError:
     """How far the best result is from the tolerance, and what would help."""
     reached = math.inf if result is None else excess(result) * tolerance

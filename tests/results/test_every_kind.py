@@ -102,6 +102,9 @@ MAKERS = {
     "spectral, from a grid": lambda: fp.spectral_solve(
         REST, (FINER, start_on(FINER)), [1.0], tolerance=1e-2
     ),
+    "smooth-spectral": lambda: fp.spectral_solve(
+        SMOOTH, NARROW, [0.0, 1.0], tolerance=1e-2
+    ),
     "spectral-steady-state": lambda: fp.spectral_steady_state(BELT, tolerance=1e-2),
     "smooth-spectral-steady-state": lambda: fp.spectral_steady_state(
         RESTING, tolerance=1e-2
@@ -246,8 +249,8 @@ def test_a_result_is_repeated_from_its_file_to_the_last_bit(name):
 DRAWN_ELSEWHERE = {
     "solution", "paths", "check", "spectrum", "rate", "large-noise", "small-noise",
     "energy-tables", "steady-state", "steady-state, a scheme", "spectral",
-    "spectral, from a grid", "energy", "energy-paths", "hydrodynamic",
-    "hydrodynamic, plain", "hydrodynamic-paths", "web", "web, of a process",
+    "spectral, from a grid", "smooth-spectral", "energy", "energy-paths", "web",
+    "hydrodynamic", "hydrodynamic, plain", "hydrodynamic-paths", "web, of a process",
 }  # fmt: skip
 
 
@@ -277,6 +280,7 @@ NUMBERS = {
     "steady-state": lambda found: f"{found.error:.2g}",
     "periodic-state": lambda found: f"{found.error:.2g}",
     "spectral": lambda found: f"{found.mean_xi1[-1]:.10g}",
+    "smooth-spectral": lambda found: f"{found.mean_kappa2[-1]:.10g}",
     "spectral-steady-state": lambda found: f"{found.moments['mean_xi1']:.10g}",
     "smooth-spectral-steady-state": lambda found: (
         f"{found.moments['mean_kappa2']:.10g}"
@@ -296,7 +300,13 @@ def test_a_page_tells_the_numbers(name, undrawn_pages):
 
 
 def test_every_figure_of_a_result_is_written(tmp_path):
-    for name in ("steady-state", "spectral", "energy-paths", "hydrodynamic-paths"):
+    for name in (
+        "steady-state",
+        "spectral",
+        "smooth-spectral",
+        "energy-paths",
+        "hydrodynamic-paths",
+    ):
         (path,) = plotting.save_figures(result(name), tmp_path, prefix=f"{name}-")
         assert path.read_bytes().startswith(b"\x89PNG")
 

@@ -6,15 +6,21 @@ from typing import Any
 
 from fpsolve._support.checks import check_positive
 from fpsolve.model import laydown
+from fpsolve.model.fibre import FibreModel
 from fpsolve.model.laydown import LayDownModel
 from fpsolve.model.potentials.quadratic import QuadraticPotential
 
-__all__ = ["check_model", "checked_tolerance", "quadratic"]
+__all__ = ["check_model", "check_parts", "checked_tolerance", "quadratic"]
 
 
 def check_model(model: Any) -> None:
     """Raise unless the expansion solves the model."""
     laydown.check_model(model)
+    check_parts(model)
+
+
+def check_parts(model: FibreModel) -> None:
+    """ValueError unless the expansion solves for this potential, noise and curve."""
     quadratic(model)
     if not model.noise > 0:
         raise ValueError(
@@ -39,7 +45,7 @@ def checked_tolerance(tolerance: Any) -> float:
     return checked
 
 
-def quadratic(model: LayDownModel) -> QuadraticPotential:
+def quadratic(model: FibreModel) -> QuadraticPotential:
     """The potential; ValueError unless it is quadratic."""
     if not isinstance(model.potential, QuadraticPotential):
         raise ValueError(
