@@ -1,9 +1,10 @@
 """Predicted spectra and CV of webs against simulated fibres, and against themselves.
 
 Claims: the errors of `web_spectrum` cover the distance to truncations that are larger
-by far; Ŝ lies within 4 standard errors of periodograms of long fibres, over lengths
-that are whole periods of the belt; CV² of `predict_web` lies within 4 standard errors
-of the mean overlap of two zones along a fibre less that of independent fibres.
+by far; Ŝ lies within 4 standard errors of periodograms of fibres that are long against
+what they need to forget, over whole periods of the belt; CV² of `predict_web` lies
+within 4 standard errors of the mean overlap of two zones along a fibre less that of
+independent fibres.
 """
 
 from __future__ import annotations
@@ -26,8 +27,12 @@ from fpsolve.spectral.resolvent.waves import along_long_waves
 # Noise, belt speed, σ2.
 QUICK = [(2.0, 0.2, 1.0)]
 FULL = [(1.0, 0.1, 1.0), (1.0, 0.3, 1.0), (2.0, 0.2, 0.6), (10.0, 0.3, 1.0)]
-# Arclength between two points of a path; fine against |k| <= 3 and the zones.
+# Arclength between two points of a path; fine against |k| <= 3. The sum over lags has
+# its kink at zero and exceeds the integral by 0.22 (DS/side)² of it, 0.3 % at most.
 DS = 1 / 16
+# Periodograms lack about the share of a relaxation in the length: of fibres that need
+# more than a twentieth of it to forget, about 1 + A², there are none.
+FORGOTTEN = 20.0
 # Until the fibre has forgotten where it began, in units of 1 + A².
 BEGIN = 12.0
 # Zones overlap up to a lag of (side + 10 σ)/v; no more is left of the law beyond.
@@ -94,7 +99,7 @@ def check_periodograms(report: Report, model: fp.LayDownModel, eta: np.ndarray) 
 def check_zones(report: Report, model: fp.LayDownModel, eta: np.ndarray) -> None:
     """CV²/(v d) of three zones, without strips: d is small against σ."""
     spacing, rows, scores = 0.1, [], []
-    sides = (0.3, 1.0, 3.0)
+    sides = (0.5, 1.0, 3.0)
     began = time.process_time()
     prediction = fp.predict_web(model, spacing=spacing, zones=sides)
     seconds = time.process_time() - began
@@ -141,7 +146,8 @@ def main() -> None:
         model = belt(*case)
         needed = int((3.0 + REACH) / model.curve.speed / DS)
         eta = simulated(model, 400 if quick else 2000, 2 * needed)
-        check_periodograms(report, model, eta)
+        if DS * len(eta) >= FORGOTTEN * (1 + model.noise**2):
+            check_periodograms(report, model, eta)
         check_zones(report, model, eta)
     report.finish()
 
