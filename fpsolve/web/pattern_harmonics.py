@@ -85,7 +85,9 @@ def errors_of(state: PeriodicState, modes: Complex, k1: Array, k2: Array) -> Arr
 def _wave_numbers(period: float, cell: float) -> Array:
     """2πn/period for all n up to where a cell is half a wave."""
     largest = int(period / (2 * cell))
-    return np.arange(-largest, largest + 1) * (2 * math.pi / period)
+    numbers: Array = np.arange(-largest, largest + 1, dtype=np.float64)
+    numbers *= 2 * math.pi / period
+    return numbers
 
 
 def _transformed(grid: Any, planes: Array, k1: Array, k2: Array) -> Complex:
