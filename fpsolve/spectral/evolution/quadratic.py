@@ -7,7 +7,6 @@ from typing import Any
 from fpsolve._support.checks import check_positive
 from fpsolve.model import laydown
 from fpsolve.model.fibre import FibreModel
-from fpsolve.model.laydown import LayDownModel
 from fpsolve.model.potentials.quadratic import QuadraticPotential
 
 __all__ = ["check_model", "check_parts", "checked_tolerance", "quadratic"]
