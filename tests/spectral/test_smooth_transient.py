@@ -7,8 +7,7 @@ import pytest
 from numpy.polynomial import hermite_e
 
 import fpsolve as fp
-from fpsolve.errors import MemoryLimitError, ToleranceError
-from fpsolve.paths import GaussianLaw, PointLaw
+from fpsolve.paths import GaussianLaw
 from fpsolve.spectral.evolution import smooth_transient
 from fpsolve.spectral.evolution.circular_functions import (
     CircularFunctions,
@@ -298,50 +297,3 @@ def test_a_truncation_that_overflows_has_no_moments(monkeypatch):
     monkeypatch.setattr(smooth_transient, "DAMPING", -3.0)
     lost = smooth_transient.run(REST, functions, law, np.array([90.0]), 1e-6, Work())
     assert np.isnan(lost).all()
-
-
-REFUSED = {
-    "a point": (
-        lambda: fp.spectral_solve(REST, PointLaw(), 1.0),
-        TypeError, "`p0` must be a GaussianLaw for a SmoothLayDownModel, got PointLaw",
-    ),
-    "another potential": (
-        lambda: fp.spectral_solve(
-            fp.SmoothLayDownModel(fp.PowerPotential(4.0), 0.1, 1.0), START, 1.0
-        ),
-        ValueError, "`potential` must be a QuadraticPotential",
-    ),
-    "no noise": (
-        lambda: fp.spectral_solve(fp.SmoothLayDownModel(ROUND, 0.1, 0.0), START, 1.0),
-        ValueError, "`noise` must be positive, got 0",
-    ),
-    "s that falls": (
-        lambda: fp.spectral_solve(REST, START, (1.0, 0.5)),
-        ValueError, "`s` must be finite, non-negative and increasing",
-    ),
-    "a model of another kind": (
-        lambda: fp.spectral_solve(ROUND, START, 1.0),
-        TypeError, "`model` must be a LayDownModel or a SmoothLayDownModel",
-    ),
-    "memory": (
-        lambda: fp.spectral_solve(REST, START, 1.0, memory_limit=1000),
-        MemoryLimitError, "use `solve`",
-    ),
-    "work": (
-        lambda: fp.spectral_solve(REST, START, 9.0, work_limit=1e7),
-        ToleranceError, "ask for earlier `s`, enlarge `tolerance`, raise `work_limit`",
-    ),
-}  # fmt: skip
-
-
-@pytest.mark.parametrize("case", REFUSED)
-def test_what_is_not_solved_is_refused(case):
-    call, error, words = REFUSED[case]
-    with pytest.raises(error, match=words):
-        call()
-
-
-def test_a_solution_says_what_it_is(at_rest):
-    assert "SmoothSpectralSolution(s = 0 to 2 at 4 places, degrees " in repr(at_rest)
-    with pytest.raises(AttributeError, match="its series are mass, mean_xi1"):
-        at_rest.relative_entropy  # noqa: B018
