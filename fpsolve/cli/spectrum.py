@@ -69,8 +69,8 @@ def spectrum(
 
     Prints them with errors, residuals and sectors, the slowest first, and writes them
     and a figure. The gap is the rate at which p/p_S - 1 decays in the end.
-    With a relaxation length they are those of a smooth fibre, about an isotropic
-    quadratic potential on a belt at rest.
+    With a relaxation length they are those of a smooth fibre, about a
+    quadratic potential.
     """
     names = "spectrum.nc", "spectrum.png"
     with command(out, *names, figures=not no_figures) as frame:

@@ -70,12 +70,7 @@ def smooth_discretisation_for(model: SmoothLayDownModel) -> SmoothDiscretisation
     from fpsolve.spectral.bases.body_frame import BodyFrameDiscretisation
 
     check(model)
-    if not (quadratic(model).isotropic and model.curve.fixed):
-        raise ValueError(
-            "`potential` must be isotropic and the belt at rest for the spectrum of a "
-            f"smooth fibre, got {model.potential!r} and {model.curve!r}; use `solve` "
-            "and `steady_state`."
-        )
+    potential = quadratic(model)
     a = half_loudness(model)
     if not a <= LARGEST_LOUDNESS:
         highest = math.sqrt(2 * LARGEST_LOUDNESS / model.relaxation_length)
@@ -84,7 +79,11 @@ def smooth_discretisation_for(model: SmoothLayDownModel) -> SmoothDiscretisation
             f"this relaxation length, got {model.noise:g}: A²R/2 is {a:.3g}, and the "
             "fibre circles. The limit of large noise is near, HydrodynamicLimit."
         )
-    return BodyFrameDiscretisation(model)
+    if potential.isotropic and model.curve.fixed:
+        return BodyFrameDiscretisation(model)
+    from fpsolve.spectral.bases.placing import coupled_discretisation
+
+    return coupled_discretisation(model)
 
 
 def check(model: FibreModel) -> None:

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from scipy.sparse import block_array, csc_array, diags_array, eye_array, kron
@@ -21,19 +21,19 @@ from fpsolve.spectral.bases.coupled_values import coupled_values
 from fpsolve.spectral.bases.curvature import curvature_operators
 from fpsolve.spectral.bases.placement import Placement, belt_speed, throwing_ranges
 from fpsolve.spectral.bases.sectors import (
-    Discretisation,
     Integers,
     Sector,
     Truncation,
     Vector,
 )
+from fpsolve.spectral.bases.smooth import SmoothDiscretisation
 from fpsolve.spectral.bases.weights import Weight
 
 __all__ = ["CoupledDiscretisation"]
 
 
 @dataclass(frozen=True)
-class CoupledDiscretisation(Discretisation):
+class CoupledDiscretisation(SmoothDiscretisation):
     """L in e^{iMα} times functions of the frame of the fibre and κ, |M| <= harmonics.
 
     With x1 = (ξ1 - c)/S1, x2 = ξ2/S2 and w = (x1 + i x2) e^{-iα}/√2 the generator of
@@ -63,6 +63,8 @@ class CoupledDiscretisation(Discretisation):
 
     model: SmoothLayDownModel
     placement: Placement
+    # The first truncations are coarse.
+    zero: ClassVar[float] = 0.02
 
     @property
     def noise(self) -> float:  # type: ignore[override]
@@ -74,11 +76,6 @@ class CoupledDiscretisation(Discretisation):
         """Belt speed v."""
         return belt_speed(self.model)
 
-    @property
-    def reversible(self) -> bool:
-        """False: turning the fibre round does not take L to its adjoint."""
-        return False
-
     def sectors(self) -> Iterator[Sector]:
         """The two parities, or four pairs of them on a fixed belt."""
         for parity in (1, -1):
@@ -89,8 +86,9 @@ class CoupledDiscretisation(Discretisation):
                 yield Sector(parity=parity, parity_along=-1)
 
     def truncation(self, level: int) -> Truncation:
-        """Degree 6, 8, 10, 12, 14, ... and what it deserves."""
-        return self.truncation_of(6 + 2 * level)
+        """Degree 6, 8, 10, 13, 17, 22, ... and what it deserves."""
+        degree = 6 + 2 * level if level < 2 else round(10 * 1.3 ** (level - 2))
+        return self.truncation_of(degree)
 
     def truncation_of(self, degree: int) -> Truncation:
         """|M| and the degree in κ that a degree in ξ deserves.
@@ -101,11 +99,6 @@ class CoupledDiscretisation(Discretisation):
         a = 0.5 * self.model.noise**2 * self.model.relaxation_length
         share = 0.8 + (a + 4.0 * math.sqrt(a)) / 35.0
         return Truncation(degree, 4 + degree // 2, math.ceil(share * degree))
-
-    @property
-    def stationary_sector(self) -> Sector:
-        """Where the constants belong, and the stationary density."""
-        return next(sector for sector in self.sectors() if sector.has_constants)
 
     def stationary_moments(
         self, vector: Vector, truncation: Truncation

@@ -7,9 +7,20 @@ from dataclasses import dataclass, replace
 
 from fpsolve.model.potentials.quadratic import QuadraticPotential
 from fpsolve.model.smooth import SmoothLayDownModel
-from fpsolve.spectral.bases.weights import Weight, curvature_weight, position_weight
+from fpsolve.spectral.bases.weights import (
+    Weight,
+    curvature_weight,
+    position_weight,
+    quadratic,
+)
 
-__all__ = ["Placement", "belt_speed", "first_placement", "throwing_ranges"]
+__all__ = [
+    "Placement",
+    "belt_speed",
+    "first_placement",
+    "is_round",
+    "throwing_ranges",
+]
 
 # Variance of the weight for that of the density, in its long tails; measured.
 SHARE = 0.44
@@ -95,13 +106,13 @@ def mean_range(model: SmoothLayDownModel) -> float:
 
 def throwing_ranges(model: SmoothLayDownModel) -> tuple[float, float]:
     """σ1 and σ2; ValueError unless the potential is quadratic."""
-    if not isinstance(model.potential, QuadraticPotential):
-        raise ValueError(
-            "`potential` must be a QuadraticPotential for the spectrum of a smooth "
-            f"fibre, got {model.potential!r}; for others fit the decay of a run of "
-            "`solve`."
-        )
-    return model.potential.sigma1, model.potential.sigma2
+    potential = quadratic(model)
+    return potential.sigma1, potential.sigma2
+
+
+def is_round(model: SmoothLayDownModel) -> bool:
+    """Whether no direction of the plane is distinguished."""
+    return bool(model.potential.isotropic and model.curve.fixed)
 
 
 def belt_speed(model: SmoothLayDownModel) -> float:

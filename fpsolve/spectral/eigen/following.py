@@ -10,6 +10,7 @@ import numpy as np
 from fpsolve._support.arrays import Complex
 from fpsolve.spectral.bases.sectors import Discretisation
 from fpsolve.spectral.eigen.eigenvalues import ShiftedInverse, neighbour
+from fpsolve.spectral.eigen.inverses import IteratedInverse, inverse_of
 from fpsolve.spectral.eigen.survey import Mode
 from fpsolve.spectral.work import Work
 
@@ -31,7 +32,6 @@ def next_mode(
 ) -> Mode:
     """The mode in the basis of a level, with its error."""
     truncation = discretisation.truncation(level)
-    matrix = discretisation.matrix(mode.sector, *truncation)
     value = mode.eigenvalue
     start = discretisation.embed(mode.vector, mode.sector, mode.truncation, truncation)
     # Off the eigenvalue itself; and on the axis when that is near, where a complex
@@ -39,7 +39,7 @@ def next_mode(
     off = 1e-3 * mode.rate
     real = abs(value.imag) < PAIR * mode.rate
     shift = complex(value.real + off, 0.0 if real else value.imag)
-    inverse = ShiftedInverse(matrix, shift, work, discretisation.ordering)
+    inverse = inverse_of(discretisation, mode.sector, truncation, shift, work)
     values, vectors = inverse.eigenpairs(4, start)
     chosen = int(np.argmin(np.abs(values - value)))
     partner = neighbour(values, chosen)
@@ -101,7 +101,7 @@ def condition(
     discretisation: Discretisation,
     mode: Mode,
     work: Work | None = None,
-    inverse: ShiftedInverse | None = None,
+    inverse: ShiftedInverse | IteratedInverse | None = None,
 ) -> float:
     """1/|⟨l, r⟩|, unit left and right eigenvectors: how far rounding is magnified.
 
@@ -116,7 +116,7 @@ def left_vector(
     discretisation: Discretisation,
     mode: Mode,
     work: Work | None = None,
-    inverse: ShiftedInverse | None = None,
+    inverse: ShiftedInverse | IteratedInverse | None = None,
 ) -> Complex:
     """Unit coefficients of the eigenfunction of L*, whose matrix is the transpose.
 
@@ -127,9 +127,9 @@ def left_vector(
         reversed_: Complex = np.where(k % 2 == 0, 1.0, -1.0) * mode.vector
         return reversed_
     if inverse is None:
-        matrix = discretisation.matrix(mode.sector, *mode.truncation)
         shift = mode.eigenvalue + 1e-3 * mode.rate
-        inverse = ShiftedInverse(matrix, shift, work, discretisation.ordering)
+        where = mode.sector, mode.truncation
+        inverse = inverse_of(discretisation, *where, shift, work)
     values, vectors = inverse.transposed().eigenpairs(2)
     chosen: Complex = vectors[:, np.argmin(np.abs(values - mode.eigenvalue))]
     return chosen

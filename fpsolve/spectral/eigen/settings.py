@@ -10,6 +10,7 @@ from fpsolve._support.memory import allowed_memory
 from fpsolve.model.fibre import FibreModel
 from fpsolve.model.potentials.quadratic import QuadraticPotential
 from fpsolve.model.smooth import SmoothLayDownModel
+from fpsolve.spectral.bases.placement import is_round
 from fpsolve.spectral.bases.sectors import Sector
 from fpsolve.spectral.work import DEFAULT_WORK, Work
 
@@ -31,6 +32,8 @@ DEFAULT_MEMORY, SMOOTH_MEMORY = 2**28, 2**31
 SMOOTH_WORK = 2 * DEFAULT_WORK
 # Errors relative to the rate that most models reach in seconds.
 BASIC, SMOOTH = 1e-10, 1e-6
+# The same on belts and about unequal throwing ranges, where indices are coupled.
+COUPLED = 3e-5
 # Rounding alone leaves about this, relative to the rate.
 FINEST = 1e-13
 
@@ -49,7 +52,9 @@ def checked_sectors(sectors: Any) -> tuple[Sector, ...]:
 def tolerance_for(model: FibreModel, tolerance: float | None) -> float:
     """The tolerance as a float, checked; where none is given what the basis reaches."""
     if tolerance is None:
-        return SMOOTH if isinstance(model, SmoothLayDownModel) else BASIC
+        if not isinstance(model, SmoothLayDownModel):
+            return BASIC
+        return SMOOTH if is_round(model) else COUPLED
     return check_tolerance(tolerance)
 
 

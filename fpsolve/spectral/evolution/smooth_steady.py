@@ -15,13 +15,16 @@ from fpsolve.evolution.call import Call
 from fpsolve.grids.smooth import SmoothPhaseSpaceGrid, check_smooth_grid
 from fpsolve.model.smooth import SmoothLayDownModel
 from fpsolve.spectral.bases.choice import smooth_discretisation_for
+from fpsolve.spectral.bases.coupled import CoupledDiscretisation
 from fpsolve.spectral.bases.sectors import Truncation
 from fpsolve.spectral.bases.smooth import SmoothDiscretisation
 from fpsolve.spectral.bases.weights import quadratic
 from fpsolve.spectral.eigen.eigenvalues import ShiftedInverse
 from fpsolve.spectral.eigen.following import slowness
+from fpsolve.spectral.evolution.coupled_steady import REMEDY, Refinement
 from fpsolve.spectral.evolution.smooth_layout import SMOOTH_STEADY
 from fpsolve.spectral.evolution.stationary_density import StationaryDensity
+from fpsolve.spectral.work import DEFAULT_WORK, Work
 
 __all__ = ["SmoothSpectralSteadyState", "smooth_steady_state"]
 
@@ -34,6 +37,9 @@ STEPS = 4
 # counts, too.
 BEFORE = 0.25
 ROUNDING = 1e-14
+# Where no tolerance is given: what is aimed at, and on belts, where it may cost too
+# much, what must be reached.
+TOLERANCE, LARGEST = 1e-8, 1e-3
 # Bytes for every entry that `factor_entries` expects in ±M: M = 0 has half of them, and
 # what is left, 5 on 2100 to 80 000 functions, holds room to find them.
 BYTES = 6.5
@@ -120,10 +126,36 @@ class Estimate:
 
 
 def smooth_steady_state(
-    model: SmoothLayDownModel, tolerance: float, memory_limit: float
+    model: SmoothLayDownModel, tolerance: float | None, memory_limit: float
 ) -> SmoothSpectralSteadyState:
     """See `spectral_steady_state`."""
     basis = smooth_discretisation_for(model)
+    if isinstance(basis, CoupledDiscretisation):
+        return coupled_steady_state(basis, tolerance, memory_limit)
+    aim = TOLERANCE if tolerance is None else tolerance
+    return round_steady_state(basis, aim, memory_limit)
+
+
+def coupled_steady_state(
+    basis: CoupledDiscretisation, tolerance: float | None, memory_limit: float
+) -> SmoothSpectralSteadyState:
+    """On a belt, or about unequal throwing ranges: what is reached, if it is enough."""
+    aim, largest = (TOLERANCE, LARGEST) if tolerance is None else (tolerance, tolerance)
+    known = Refinement(basis, aim, memory_limit, Work(DEFAULT_WORK)).run()
+    if known is None or not (known.settled and known.relative <= largest):
+        reached = math.inf if known is None else known.relative
+        raise ToleranceError(reached, largest, REMEDY)
+    estimates = [
+        Estimate(truncation, vector, known.moments) for vector, truncation in known.both
+    ]
+    return result(basis.model, basis, estimates, known.errors)
+
+
+def round_steady_state(
+    basis: SmoothDiscretisation, tolerance: float, memory_limit: float
+) -> SmoothSpectralSteadyState:
+    """Of a round potential on a belt at rest, to the tolerance."""
+    model = basis.model
     known: list[Estimate] = []
     reached = math.inf
     for level in itertools.count():

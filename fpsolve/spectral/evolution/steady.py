@@ -31,6 +31,7 @@ from fpsolve.spectral.evolution.quadratic import (
     quadratic,
 )
 from fpsolve.spectral.evolution.smooth_steady import (
+    TOLERANCE,
     SmoothSpectralSteadyState,
     smooth_steady_state,
 )
@@ -101,7 +102,10 @@ class SpectralSteadyState(StationaryDensity):
 @recorded()
 @one_blas_thread()
 def spectral_steady_state(
-    model: FibreModel, *, tolerance: float = 1e-8, memory_limit: float = 2**31
+    model: FibreModel,
+    *,
+    tolerance: float | None = None,
+    memory_limit: float = 2**31,
 ) -> SpectralSteadyState | SmoothSpectralSteadyState:
     """Density with L* p = 0 and mass one, for quadratic B and constant belt speed.
 
@@ -116,11 +120,19 @@ def spectral_steady_state(
     little noise it takes more functions than fit: 1e-8 is reached at A = 1 for R up to
     σ1, in twenty seconds where both are one, and in two where A >= 2.
 
+    On a belt and about unequal throwing ranges the angular indices M are coupled
+    (`CoupledDiscretisation`), and the equations solved by GMRES with the indices alone
+    as preconditioner. The basis stands about the mean and is as wide as the density,
+    which small truncations give first. E cos α = -v and E κ² converge faster than the
+    variances.
+
     Parameters
     ----------
     model : LayDownModel or SmoothLayDownModel
-    tolerance : float
-        For each moment, relative where it is above one.
+    tolerance : float, optional
+        For each moment, relative where it is above one; by default 1e-8. Of a smooth
+        fibre on a belt or about unequal throwing ranges by default 1e-8 or what
+        twenty seconds reach, but not above 1e-3: `errors` say what.
     memory_limit : int
         Bytes that the elimination may take.
 
@@ -136,11 +148,13 @@ def spectral_steady_state(
     [KMW09]_, section 3.1.2.
     """
     if isinstance(model, SmoothLayDownModel):
-        limits = checked_tolerance(tolerance), check_tolerance(_LIMIT, memory_limit)
-        return smooth_steady_state(model, *limits)
+        wanted = None if tolerance is None else checked_tolerance(tolerance)
+        limit = check_tolerance(_LIMIT, memory_limit)
+        return smooth_steady_state(model, wanted, limit)
     check_model(model)
-    limits = checked_tolerance(tolerance), check_tolerance(_LIMIT, memory_limit)
-    return basic_steady_state(model, *limits)
+    wanted = checked_tolerance(TOLERANCE if tolerance is None else tolerance)
+    limit = check_tolerance(_LIMIT, memory_limit)
+    return basic_steady_state(model, wanted, limit)
 
 
 def basic_steady_state(
