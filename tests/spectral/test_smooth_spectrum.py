@@ -98,6 +98,18 @@ def test_little_noise_is_refused_where_no_truncation_that_fits_is_enough():
         fp.spectral_steady_state(smooth(1.0, 0.2), memory_limit=1e8)
 
 
+def test_without_a_tolerance_what_is_reached_is_returned_with_its_error():
+    """Memory ends before 1e-8 here; the errors say so, and cover."""
+    model = smooth(0.3, 1.2)
+    found = fp.spectral_steady_state(model, memory_limit=2e7)
+    finer = fp.spectral_steady_state(model, memory_limit=8e7)
+    assert 1e-8 < found.errors["variance_xi1"] < 1e-3
+    for name, error in found.errors.items():
+        assert abs(found.moments[name] - finer.moments[name]) <= error
+    with pytest.raises(ToleranceError, match="tolerance 1e-08 not reached"):
+        fp.spectral_steady_state(model, tolerance=1e-8, memory_limit=2e7)
+
+
 @pytest.mark.parametrize(
     ("model", "message"),
     [

@@ -39,6 +39,8 @@ class Refinement:
     memory: int
     sectors: tuple[Sector, ...] | None = None
     work: Work = field(default_factory=Work)
+    # Error relative to the rate that will do where memory or work end.
+    largest: float = 0.0
 
     def run(self) -> list[Mode]:
         """The modes, slowest first."""
@@ -141,10 +143,10 @@ class Refinement:
         return mode.error - mode.rounding <= allowed
 
     def checked(self, modes: list[Mode]) -> list[Mode]:
-        """The modes; ToleranceError unless all are known."""
-        if not all(map(self.known, modes)):
-            raise self.failure(modes)
-        return modes
+        """The modes; ToleranceError unless all are known, or well enough."""
+        if all(map(self.known, modes)) or worst(modes) <= self.largest:
+            return modes
+        raise self.failure(modes)
 
     def failure(self, modes: list[Mode]) -> ToleranceError:
         """How far the modes are from being known, and what it would take."""
@@ -157,7 +159,7 @@ class Refinement:
                 "EnergyProcess as its limit of little noise), enlarge `tolerance`, ask "
                 "for fewer eigenvalues or raise `work_limit`"
             )
-        return ToleranceError(worst(modes), self.tolerance, remedy)
+        return ToleranceError(worst(modes), max(self.tolerance, self.largest), remedy)
 
 
 def same_branch(mode: Mode) -> bool:

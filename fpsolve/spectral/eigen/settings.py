@@ -16,6 +16,7 @@ from fpsolve.spectral.work import DEFAULT_WORK, Work
 
 __all__ = [
     "FINEST",
+    "accepted_for",
     "check_tolerance",
     "checked_sectors",
     "essential_of",
@@ -34,6 +35,8 @@ SMOOTH_WORK = 2 * DEFAULT_WORK
 BASIC, SMOOTH = 1e-10, 1e-6
 # The same on belts and about unequal throwing ranges, where indices are coupled.
 COUPLED = 3e-5
+# What will do for them where nothing is asked, when the work ends before.
+LARGEST = 1e-3
 # Rounding alone leaves about this, relative to the rate.
 FINEST = 1e-13
 
@@ -56,6 +59,12 @@ def tolerance_for(model: FibreModel, tolerance: float | None) -> float:
             return BASIC
         return SMOOTH if is_round(model) else COUPLED
     return check_tolerance(tolerance)
+
+
+def accepted_for(model: FibreModel, tolerance: float | None) -> float:
+    """Error, relative to the rate, that is accepted when the work ends before."""
+    best_effort = tolerance is None and isinstance(model, SmoothLayDownModel)
+    return LARGEST if best_effort else 0.0
 
 
 def check_tolerance(tolerance: float) -> float:

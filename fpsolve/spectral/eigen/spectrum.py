@@ -26,6 +26,7 @@ from fpsolve.spectral.eigen.layout import SPECTRUM
 from fpsolve.spectral.eigen.refinement import Refinement
 from fpsolve.spectral.eigen.settings import (
     FINEST,
+    accepted_for,
     checked_sectors,
     essential_of,
     memory_of,
@@ -200,13 +201,15 @@ def spectrum(
     ----------
     model : LayDownModel or SmoothLayDownModel
         Noise A > 0; a quadratic potential on a belt at rest or of constant speed, or
-        any isotropic one on a fixed belt. A smooth fibre: an isotropic quadratic
-        potential on a fixed belt.
+        any isotropic one on a fixed belt. A smooth fibre: a quadratic potential on a
+        belt at rest or of constant speed.
     n_eigenvalues : int
         How many; a complex pair counts as two, ±M as one.
     tolerance : float, optional
         Largest error of every eigenvalue relative to its rate -Re λ, at least 1e-13;
-        by default 1e-10, of a smooth fibre 1e-6.
+        by default 1e-10. Of a smooth fibre by default 1e-6, on a belt or about unequal
+        throwing ranges 3e-5, or what the work reaches, but not above 1e-3: `errors`
+        say what.
         Close to a double eigenvalue rounding limits the accuracy to about 1e-8; then
         `errors` says so and no exception is raised.
     sectors : iterable of Sector, optional
@@ -245,6 +248,7 @@ def spectrum(
         memory_of(memory_limit, model),
         None if sectors is None else checked_sectors(sectors),
         work_for(model, work_limit),
+        accepted_for(model, tolerance),
     )
     modes: list[Mode] = []
     for mode in refinement.run():

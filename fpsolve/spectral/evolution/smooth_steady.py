@@ -132,8 +132,7 @@ def smooth_steady_state(
     basis = smooth_discretisation_for(model)
     if isinstance(basis, CoupledDiscretisation):
         return coupled_steady_state(basis, tolerance, memory_limit)
-    aim = TOLERANCE if tolerance is None else tolerance
-    return round_steady_state(basis, aim, memory_limit)
+    return round_steady_state(basis, tolerance, memory_limit)
 
 
 def coupled_steady_state(
@@ -152,16 +151,20 @@ def coupled_steady_state(
 
 
 def round_steady_state(
-    basis: SmoothDiscretisation, tolerance: float, memory_limit: float
+    basis: SmoothDiscretisation, tolerance: float | None, memory_limit: float
 ) -> SmoothSpectralSteadyState:
     """Of a round potential on a belt at rest, to the tolerance."""
+    aim, largest = (TOLERANCE, LARGEST) if tolerance is None else (tolerance, tolerance)
     model = basis.model
     known: list[Estimate] = []
+    errors: dict[str, float] = {}
     reached = math.inf
     for level in itertools.count():
         truncation = basis.truncation(level)
         if required(basis, truncation) > memory_limit:
-            raise ToleranceError(reached, tolerance, remedy(model))
+            if reached <= largest:
+                return result(model, basis, known, errors)
+            raise ToleranceError(reached, largest, remedy(model))
         known.append(Estimate.of(basis, truncation))
         if len(known) > 2:
             errors = errors_of(*known[-3:])
@@ -169,7 +172,7 @@ def round_steady_state(
                 error / max(1.0, abs(known[-1].moments[name]))
                 for name, error in errors.items()
             )
-            if reached <= tolerance:
+            if reached <= aim:
                 return result(model, basis, known, errors)
     raise AssertionError("the levels end")
 

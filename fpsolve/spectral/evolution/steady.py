@@ -130,9 +130,9 @@ def spectral_steady_state(
     ----------
     model : LayDownModel or SmoothLayDownModel
     tolerance : float, optional
-        For each moment, relative where it is above one; by default 1e-8. Of a smooth
-        fibre on a belt or about unequal throwing ranges by default 1e-8 or what
-        twenty seconds reach, but not above 1e-3: `errors` say what.
+        For each moment, relative where it is above one; by default 1e-8, of a
+        smooth fibre that or what the default work and memory reach, but not above
+        1e-3: `errors` say what.
     memory_limit : int
         Bytes that the elimination may take.
 
