@@ -24,6 +24,7 @@ from fpsolve.cli.rerun import rerun
 from fpsolve.cli.resume import resume
 from fpsolve.cli.run import run
 from fpsolve.cli.spectrum import spectrum
+from fpsolve.cli.web import web
 
 __all__ = ["app", "main"]
 
@@ -45,6 +46,7 @@ _COMMANDS: dict[Callable[..., None], str] = {
     spectrum: "spectrum --potential linear --noise 0.8",
     energy: "energy --noise 0.3 --passage 0.1 0.5",
     limits: "limits small-noise --quick",
+    web: "web --out results",
     plot: "plot results/laydown.nc --movie",
     report: "report results/laydown.nc",
     rerun: "rerun results/laydown.nc --out again",

@@ -14,7 +14,10 @@ if TYPE_CHECKING:
 __all__ = [
     "CONFINING",
     "EXAMPLES",
+    "EXPORTS",
     "PARTS",
+    "PHASES",
+    "POSITIONS",
     "Config",
     "Example",
     "KeepCheckpoint",
@@ -33,6 +36,9 @@ __all__ = [
 EXAMPLES = ("laydown", "spunbond")
 CONFINING = ("quadratic", "linear", "power")
 PARTS = ("relaxation", "evolution", "branches", "gap", "variance")
+POSITIONS = ("regular", "random")
+PHASES = ("independent", "in phase")
+EXPORTS = ("png", "tiff", "vtp", "csv")
 
 
 def proposing(*words: str) -> Callable[[str], list[str]]:

@@ -1,4 +1,4 @@
-"""What a run or a sampling is going to do, before it does it."""
+"""What a run, a sampling or a web is going to do, before it does it."""
 
 from __future__ import annotations
 
@@ -10,8 +10,9 @@ from fpsolve.cli.console import print_pairs
 if TYPE_CHECKING:
     from fpsolve.cli.config.paths import PathsConfig, PathsProblem
     from fpsolve.cli.config.run import Problem, RunConfig
+    from fpsolve.cli.config.web import WebConfig, WebProblem
 
-__all__ = ["print_paths_plan", "print_plan", "suggestions"]
+__all__ = ["print_paths_plan", "print_plan", "print_web_plan", "suggestions"]
 
 
 def print_plan(config: RunConfig, problem: Problem, out: Path) -> None:
@@ -44,8 +45,34 @@ def print_paths_plan(
     _print(config, problem.model.process_equation, between, out)
 
 
+def print_web_plan(
+    config: WebConfig, problem: WebProblem, out: Path, seed_from: str
+) -> None:
+    """Print equation, window, positions, steps, and where the seed comes from."""
+    plan, unit = problem.order.plan, problem.order.unit
+    asked, metres = config.web, "" if config.process is None else " m"
+    rows, columns = plan.window.shape
+    schedule = plan.ensemble.schedule
+    between = [
+        ("window", f"{asked.width:g} x {asked.length:g}{metres}, across x along the "
+         f"belt; {rows} x {columns} pixels"),
+        ("positions", f"{plan.n_fibres}, {unit * plan.spacing:g}{metres} apart, "
+         f"{_word(asked.positions)}"),
+        ("phases", _word(asked.phases)),
+        ("steps", f"ds = {unit * schedule.ds:.3g}{metres}, "
+         f"{plan.n_fibres * schedule.n_steps:.3g} in all"),
+        ("seed", f"{problem.arguments['seed']} ({seed_from})"),
+    ]  # fmt: skip
+    _print(config, plan.ensemble.model.process_equation, between, out)
+
+
+def _word(value: Any) -> str:
+    """Return a word, or that there are numbers in its place."""
+    return value if isinstance(value, str) else "given"
+
+
 def _print(
-    config: RunConfig | PathsConfig,
+    config: RunConfig | PathsConfig | WebConfig,
     equation: str,
     between: list[tuple[str, str]],
     out: Path,

@@ -1,4 +1,4 @@
-"""What `run`, `resume` and `paths` leave: numbers, a result, its TOML, and figures."""
+"""What `run`, `paths`, `web` … leave: numbers, a result, its TOML, and figures."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from fpsolve.cli.frame import Frame
     from fpsolve.density.solution import Solution
     from fpsolve.paths.result import Paths
+    from fpsolve.web.web import Web
 
 __all__ = ["claim_result", "print_moments", "print_solution", "write_result"]
 
@@ -31,7 +32,7 @@ def claim_result(frame: Frame, file_name: str) -> None:
 
 
 def write_result(
-    result: Solution | Paths,
+    result: Solution | Paths | Web,
     frame: Frame,
     file_name: str,
     show: Callable[[Any], None],
@@ -42,14 +43,16 @@ def write_result(
     A part of a result has no figures, and does not take the place of an older,
     complete one.
     """
-    finished = result.status == "finished"
+    # A web is whole, or there is none.
+    status = getattr(result, "status", "finished")
+    finished = status == "finished"
     if toml is not None:
         about = {**result.provenance, "configuration": toml}
         result = replace(result, provenance=about)
     show(result)
     name = Path(file_name)
     if not finished:
-        name = name.with_stem(f"{name.stem}-{result.status}")
+        name = name.with_stem(f"{name.stem}-{status}")
     frame.finish(result, str(name))
     if toml is not None:
         frame.text(toml, str(name.with_suffix(".toml")))

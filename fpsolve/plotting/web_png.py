@@ -16,7 +16,7 @@ from fpsolve.plotting.web_image import (
     image_of,
 )
 
-__all__ = ["save_web_png"]
+__all__ = ["check_picture", "save_web_png"]
 
 # Dots per inch of the drawing; of text and bar only, pixels stay pixels.
 _DOTS = 100
@@ -55,12 +55,7 @@ def save_web_png(
     image, path = image_of(web), check_path("path", path)
     opacity = checked_opacity(opacity, image)
     n_cross, n_machine = image.density.shape
-    if not (n_machine >= _NARROWEST and max(n_cross + _STRIP, n_machine) < _WIDEST):
-        raise ValueError(
-            f"`web` must have {_NARROWEST} to {_WIDEST - _STRIP - 1} pixels along a "
-            f"side of its picture, got {n_cross} × {n_machine}; use `to_tiff`, or lay "
-            "it with other pixels."
-        )
+    check_picture(n_cross, n_machine)
     height = n_cross + _STRIP
     with paper_style():
         figure = new_figure(n_machine / _DOTS, height / _DOTS)
@@ -72,3 +67,13 @@ def save_web_png(
         with atomic_path(path) as draft:
             figure.savefig(draft, dpi=_DOTS, format="png")
     return path
+
+
+def check_picture(n_cross: int, n_machine: int) -> None:
+    """Raise ValueError unless a web of so many pixels can be a PNG with its bar."""
+    if not (n_machine >= _NARROWEST and max(n_cross + _STRIP, n_machine) < _WIDEST):
+        raise ValueError(
+            f"`web` must have {_NARROWEST} to {_WIDEST - _STRIP - 1} pixels along a "
+            f"side of its picture, got {n_cross} × {n_machine}; use `to_tiff`, or lay "
+            "it with other pixels."
+        )

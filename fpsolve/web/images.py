@@ -11,7 +11,7 @@ import numpy as np
 from fpsolve._support.files import atomic_path
 from fpsolve._support.labels import to_json
 
-__all__ = ["write_csv", "write_tiff"]
+__all__ = ["tifffile_module", "write_csv", "write_tiff"]
 
 _WHITE = 2**16 - 1
 _CENTIMETRES = 100.0
@@ -33,14 +33,20 @@ def write_csv(web: Any, path: str | os.PathLike[str]) -> Path:
     return Path(path)
 
 
-def write_tiff(web: Any, path: str | os.PathLike[str]) -> Path:
-    """Write the mass per area, or the length, with the physical size of a pixel."""
+def tifffile_module() -> Any:
+    """The library that writes TIFF; ImportError with what to install without it."""
     try:
         import tifffile
     except ImportError as error:
         raise ImportError(
             "tifffile must be installed to write a TIFF: pip install 'fpsolve[web]'."
         ) from error
+    return tifffile
+
+
+def write_tiff(web: Any, path: str | os.PathLike[str]) -> Path:
+    """Write the mass per area, or the length, with the physical size of a pixel."""
+    tifffile = tifffile_module()
     mass = web.mass_density
     shown = web.length_density if mass is None else mass
     one = float(shown.max()) / _WHITE or 1.0

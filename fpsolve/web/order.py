@@ -26,6 +26,8 @@ _THICKEST = 0.1
 # Pieces of fibre that may lie beyond the margins without one being found, in relaxation
 # lengths: P(none) = e^{-3}.
 _UNSEEN = 3.0
+# How far a width may be from a multiple of the spacing, relatively: rounding.
+_TYPED = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,6 +91,8 @@ def order_of(
     number, grams = seed_number(seed, None), checked_titer(titer, process)
     unit = 1.0 if process is None else process.length
     window = Window.of(width, length, pixel)
+    if periodic is True and isinstance(positions, str) and positions == "regular":
+        check_closed(window.width, check_positive("spacing", spacing))
     window = Window(window.width / unit, window.length / unit, window.pixel / unit)
     if not isinstance(positions, str):
         positions = check_finite_numbers("positions", positions) / unit
@@ -107,6 +111,16 @@ def pixels_of(counts: Counts, order: Order) -> tuple[Array, Array, Array]:
         first, mixed = first / length, mixed / length
     one = plan.ensemble.schedule.ds / kernels.UNIT / plan.window.pixel**2 / order.unit
     return length * one, first, mixed
+
+
+def check_closed(width: float, d: float) -> None:
+    """Raise ValueError unless regular positions continue on the other side."""
+    number = width / d
+    if not abs(number - round(number)) <= _TYPED * number:
+        raise ValueError(
+            f"`width` must be a multiple of `spacing` = {d:g} across a periodic web, "
+            f"got {width:g}; use width = {max(round(number), 1) * d:.12g}."
+        )
 
 
 def check_conserved(counted: int, pieces: int) -> None:

@@ -121,7 +121,7 @@ def plan_of(
     span = (0.0, window.width) if periodic else (-high2, window.width - low2)
     places, d = places_of(positions, spacing, span, seed)
     if periodic:
-        check_periodic(places, positions, window, d)
+        check_inside(places, window)
     check_counts(window, d, abs(speed), step)
     burnt = abs(speed) * margins.n_burn * step
     ends = -high1, window.length - low1
@@ -170,20 +170,13 @@ def checked_speed(model: FibreModel) -> float:
     return speed
 
 
-def check_periodic(places: Array, positions: Any, window: Window, d: float) -> None:
-    """Raise ValueError unless the places continue periodically."""
+def check_inside(places: Array, window: Window) -> None:
+    """Raise ValueError unless the places of a periodic web lie in it."""
     inside = (places >= 0) & (places < window.width)
     if not inside.all():
         raise ValueError(
             f"`positions` must lie in [0, {window.width:g}) across a periodic web, got "
             f"{places[~inside][0]:g}."
-        )
-    number = window.width / d
-    regular = isinstance(positions, str) and positions == "regular"
-    if regular and not abs(number - round(number)) <= 1e-9 * number:
-        raise ValueError(
-            f"`width` must be a multiple of `spacing` = {d:g} across a periodic web, "
-            f"got {window.width:g}; use width = {max(round(number), 1) * d:.12g}."
         )
 
 

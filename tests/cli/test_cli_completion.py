@@ -3,11 +3,13 @@
 import os
 import subprocess
 import sys
+from typing import get_args
 
 import pytest
 
 from fpsolve.cli import options
 from fpsolve.cli.config import EXAMPLES
+from fpsolve.cli.config.web import WebSection
 from fpsolve.studies.rates.cases import PARTS
 
 
@@ -38,6 +40,8 @@ def proposals(line):
         ("fpsolve run --example s", ["spunbond"]),
         ("fpsolve energy --potential ", ["quadratic", "linear", "power"]),
         ("fpsolve rate --part b", ["branches"]),
+        ("fpsolve web --positions r", ["regular", "random"]),
+        ("fpsolve web --export t", ["tiff"]),
     ],
 )
 def test_a_shell_is_told_what_fits(line, expected):
@@ -53,3 +57,11 @@ def test_there_is_a_completion_script_for_every_common_shell(shell):
 def test_the_words_proposed_are_those_that_are_taken():
     assert options.EXAMPLES == EXAMPLES
     assert tuple(PARTS) == options.PARTS
+    for key, words in (
+        ("positions", options.POSITIONS),
+        ("phases", options.PHASES),
+        ("exports", options.EXPORTS),
+    ):
+        annotation = WebSection.model_fields[key].annotation
+        (literal,) = [part for part in get_args(annotation) if get_args(part)][:1]
+        assert get_args(literal) == words

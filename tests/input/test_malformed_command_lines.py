@@ -3,7 +3,7 @@
 from collections import Counter
 
 import pytest
-from malformed import configurations, stores
+from malformed import configurations, stores, webs
 from malformed import files as results
 from malformed.cases import parametrised
 from malformed.command_lines import MISTAKES, USAGE
@@ -67,7 +67,7 @@ def test_the_corpus_is_large_and_no_row_is_there_twice():
     tables = {
         "arguments": ARGUMENTS,
         "arrays": ARRAYS,
-        "configurations": configurations.CONFIGURATIONS,
+        "configurations": [*configurations.CONFIGURATIONS, *webs.WEB_FILES],
         "files": [*results.FILES, *stores.STORES, *stores.PATHS],
         "command lines": MISTAKES,
     }

@@ -4,9 +4,10 @@ import pytest
 from command_line import files
 from malformed.cases import assert_said, parametrised
 from malformed.configurations import ABSURD, PATHS_FILES, RUN, RUN_FILES, written
+from malformed.webs import WEB_FILES
 from refusals import assert_one_line, everything
 
-from fpsolve.cli.config import PathsConfig, RunConfig, load_config
+from fpsolve.cli.config import PathsConfig, RunConfig, WebConfig, load_config
 from fpsolve.errors import ConfigurationError, MemoryLimitError
 
 
@@ -38,15 +39,24 @@ def test_a_wrong_run_costs_one_line_and_no_file(case, fpsolve, tmp_path):
     assert everything(tmp_path) == before
 
 
-@parametrised(PATHS_FILES)
-def test_wrong_paths_cost_one_line_and_no_file(case, fpsolve, tmp_path):
+def refused(case, kind, words, fpsolve, tmp_path):
     path = case.do(tmp_path)
     with pytest.raises(ConfigurationError) as caught:
-        load_config(path, PathsConfig).build()
+        load_config(path, kind).build()
     assert_said(str(caught.value), case)
     before = files(tmp_path)
-    assert_one_line(fpsolve("paths", path, "--out", "out"), case, 2)
+    assert_one_line(fpsolve(*words, path, "--out", "out"), case, 2)
     assert files(tmp_path) == before
+
+
+@parametrised(PATHS_FILES)
+def test_wrong_paths_cost_one_line_and_no_file(case, fpsolve, tmp_path):
+    refused(case, PathsConfig, ["paths"], fpsolve, tmp_path)
+
+
+@parametrised(WEB_FILES)
+def test_a_wrong_web_costs_one_line_and_no_file(case, fpsolve, tmp_path):
+    refused(case, WebConfig, ["web"], fpsolve, tmp_path)
 
 
 def test_a_byte_order_mark_does_no_harm(tmp_path):

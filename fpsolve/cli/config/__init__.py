@@ -1,22 +1,29 @@
-"""Runs and samplings described in TOML files."""
+"""Runs, samplings and webs described in TOML files."""
 
 from fpsolve.cli.config.paths import PathsConfig, PathsProblem
 from fpsolve.cli.config.reading import (
     EXAMPLES,
     PATHS_EXAMPLE,
+    WEB_EXAMPLE,
+    check_config,
     example_path,
     load_config,
     read_config,
 )
 from fpsolve.cli.config.run import Problem, RunConfig
+from fpsolve.cli.config.web import WebConfig, WebProblem
 
 __all__ = [
     "EXAMPLES",
     "PATHS_EXAMPLE",
+    "WEB_EXAMPLE",
     "PathsConfig",
     "PathsProblem",
     "Problem",
     "RunConfig",
+    "WebConfig",
+    "WebProblem",
+    "check_config",
     "example_path",
     "load_config",
     "read_config",

@@ -12,6 +12,7 @@ from fpsolve.cli.config.description import Description
 from fpsolve.cli.config.paths import PathsConfig
 from fpsolve.cli.config.run import RunConfig
 from fpsolve.cli.config.sections import kinds_of
+from fpsolve.cli.config.web import WebConfig
 
 __all__ = ["complaints", "suggestion"]
 
@@ -19,6 +20,7 @@ __all__ = ["complaints", "suggestion"]
 _COMMANDS: dict[type[Description], str] = {
     RunConfig: "fpsolve run",
     PathsConfig: "fpsolve paths",
+    WebConfig: "fpsolve web",
 }
 # A section of one name is the same in all of them.
 _SECTIONS = {

@@ -16,13 +16,22 @@ from fpsolve.cli.config.description import Description
 from fpsolve.cli.config.run import RunConfig
 from fpsolve.errors import ConfigurationError
 
-__all__ = ["EXAMPLES", "PATHS_EXAMPLE", "example_path", "load_config", "read_config"]
+__all__ = [
+    "EXAMPLES",
+    "PATHS_EXAMPLE",
+    "WEB_EXAMPLE",
+    "check_config",
+    "example_path",
+    "load_config",
+    "read_config",
+]
 
 T = TypeVar("T", bound=Description)
 
-# What `fpsolve run` can solve, and what `fpsolve paths` samples.
+# What `fpsolve run` can solve, `fpsolve paths` samples, and `fpsolve web` lays.
 EXAMPLES = ("laydown", "spunbond")
 PATHS_EXAMPLE = "fibres"
+WEB_EXAMPLE = "web"
 
 
 @overload
@@ -42,7 +51,7 @@ def load_config(
     ----------
     path : str or os.PathLike
     kind : type, optional
-        RunConfig, or PathsConfig for sampled paths.
+        RunConfig, PathsConfig for sampled paths, or WebConfig for a web.
 
     Raises
     ------
@@ -86,8 +95,27 @@ def read_config(
     except tomllib.TOMLDecodeError as error:
         reason = str(error).rstrip(".")
         raise ConfigurationError(f"{source} is not valid TOML: {reason}.") from None
+    return check_config(_with_tuples(tables), source, kind)
+
+
+def check_config(tables: dict[str, Any], source: str, kind: type[T]) -> T:
+    """Check a configuration given as tables by their names, tuples for lists.
+
+    Parameters
+    ----------
+    tables : dict
+    source : str
+        What messages call it.
+    kind : type
+        As for `load_config`.
+
+    Raises
+    ------
+    ConfigurationError
+        As for `load_config`.
+    """
     try:
-        return kind.model_validate(_with_tuples(tables))
+        return kind.model_validate(tables)
     except ValidationError as error:
         lines = "\n".join(complaints(error, kind))
         raise ConfigurationError(f"{source}, {lines}") from None
@@ -98,15 +126,16 @@ def example_path(name: str) -> Path:
 
     Parameters
     ----------
-    name : {"laydown", "spunbond", "fibres"}
-        B = ‖ξ‖²/2 with A = 1, a spunbond process in SI units, or paths on a belt.
+    name : {"laydown", "spunbond", "fibres", "web"}
+        B = ‖ξ‖²/2 with A = 1, a spunbond process in SI units, paths on a belt, or the
+        web of a spunbond process.
 
     Raises
     ------
     ConfigurationError
         If there is no such example.
     """
-    if name not in (*EXAMPLES, PATHS_EXAMPLE):
+    if name not in (*EXAMPLES, PATHS_EXAMPLE, WEB_EXAMPLE):
         raise ConfigurationError(
             f"`example` must be one of {', '.join(EXAMPLES)}, got {name!r}"
             f"{suggestion(name, EXAMPLES)}"

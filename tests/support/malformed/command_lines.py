@@ -30,6 +30,9 @@ USAGE = [
     ("paths --n-paths 1e4", "--n-paths"),
     ("paths --seed -1", "--seed"),
     ("paths --seed luck", "--seed"),
+    ("web --spacing wide", "--spacing"),
+    ("web --seed -1", "--seed"),
+    ("web --width 10mm", "--width"),
     ("check --seed 1.5", "--seed"),
     ("check --at end", "--at"),
     ("check --n-paths many", "--n-paths"),
@@ -77,6 +80,40 @@ PATHS = [
     row("paths run.toml", "those of `fpsolve run`", "give it to that command"),
     row("paths --threads 9999", "got 9999", "must be at most"),
     row("paths --out notes.txt", "got `notes.txt`", "`--out` must be a folder"),
+]
+WEB = [
+    row("web none.toml", "got `none.toml`", "must be an existing TOML file"),
+    row("web run.toml", "those of `fpsolve run`", "give it to that command"),
+    row("web run.toml --noise 2", "`--noise` .*got `run.toml`", "change its sections"),
+    row("web --spacing 0", "got 0", "`spacing` must be positive"),
+    row("web --spacing -1", "got -1", "`spacing` must be positive"),
+    row("web --spacing nan", "got nan", "`spacing` must be positive"),
+    row("web --width 0.1003", "got 0.1003", "`width` must be a multiple of `pixel`"),
+    row("web --pixel 1", "got 1 for", "must not be larger than the window"),
+    row("web --pixel nan", "got nan", "`pixel` must be positive"),
+    row("web --length inf", "got inf", "`length` must be positive and finite"),
+    row("web --positions hexagonal", "got 'hexagonal'", "'regular' or 'random'"),
+    row("web --phases random", "got 'random'", "'independent' or 'in phase'"),
+    row("web --titer 1.5", "got 1.5", "dtex given instead"),
+    row("web --noise 1 --titer 1e-4", "got 0.0001", "must be given with a Process"),
+    row("web --ds 0", "got 0", "`ds` must be positive"),
+    row("web --zone 1", "got 1", "the shorter side of the window"),
+    row("web --zone nan", "got nan", "`zones` must be positive"),
+    row("web --export jpeg", "got 'jpeg'", "'png', 'tiff', 'vtp' or 'csv'"),
+    row("web --noise 0", "got 0|0", "must have noise for a web"),
+    row("web --noise nan", "got nan", "`noise` must be non-negative"),
+    row("web --belt-speed 0", "MovingBelt|FixedBelt", "must have a moving belt"),
+    row("web --belt-speed 10", "got 10", "strictly between -1 and 1"),
+    row("web --relaxation-length -1", "got -1", "must be positive"),
+    row("web --potential free", "Free", "`potential` must confine"),
+    row("web --potential cubic", "got 'cubic'", "one of quadratic, linear"),
+    row(
+        "web --periodic --spacing 3e-3",
+        "= 0.003 .* got 0.1",
+        "`width` must be a multiple of",
+    ),
+    row("web --out notes.txt", "got `notes.txt`", "`--out` must be a folder"),
+    row("web --threads 9999", "got 9999", "must be at most"),
 ]
 CHECK = [
     row("check none.toml", "got `none.toml`", "must be an existing TOML file"),
@@ -177,6 +214,6 @@ COMPARE = [
 ]
 
 MISTAKES = [
-    *RUN, *PATHS, *CHECK, *RATE, *SPECTRUM, *ENERGY, *LIMITS, *PLOT, *RESUME, *REPORT,
-    *RERUN, *COMPARE,
+    *RUN, *PATHS, *WEB, *CHECK, *RATE, *SPECTRUM, *ENERGY, *LIMITS, *PLOT, *RESUME,
+    *REPORT, *RERUN, *COMPARE,
 ]  # fmt: skip
