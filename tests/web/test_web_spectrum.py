@@ -102,6 +102,32 @@ def test_errors_cover_amplitude_and_period():
         assert inside > 0.95 - 4 * 0.028
 
 
+@pytest.mark.parametrize("strength", [0.0, 1.0, 2.0])
+def test_errors_cover_where_noise_hides_the_strip(strength):
+    # Strips of a known period as strong as the noise in their wave, and none at all:
+    # of 60 × 80 pixels of deviation 0.3, |c|² has the mean 4 × 0.09/4800.
+    generator, planted = np.random.default_rng(11), strength * np.sqrt(0.36 / 4800)
+    wave = planted * np.cos(2 * np.pi * (np.arange(60) + 0.5) / 7.5)[:, None]
+    webs = [1 + wave + uniform(generator, 0.3, (60, 80)) for _ in range(200)]
+    found = [strips(web, 1.0, period=7.5) for web in webs]
+    truth = {"amplitude": planted}
+    power = planted**2 / 2
+    truth["share"] = power / (power + 0.09 / 80)
+    for name, value in truth.items():
+        estimates = [getattr(one, name) for one in found]
+        assert min(one.standard_error for one in estimates) > 0
+        intervals = [one.interval() for one in estimates]
+        inside = np.mean([low <= value <= high for low, high in intervals])
+        # Four standard deviations of 200 below 95 %.
+        assert inside > 0.95 - 4 * 0.0154, name
+    if strength == 0:
+        # And in 1 - 1/e of webs without strips nothing is left of the amplitude.
+        assert 0.5 < np.mean([one.amplitude == 0 for one in found]) < 0.75
+        # There the error is that of noise; more where stretches differ about the rest.
+        errors = [one.amplitude.standard_error for one in found if one.amplitude == 0]
+        assert np.median(errors) == pytest.approx(np.sqrt(0.36 / 4800), rel=0.1)
+
+
 def test_noise_alone_is_seldom_called_a_strip():
     generator = np.random.default_rng(8)
     p_values = np.array([

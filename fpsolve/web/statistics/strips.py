@@ -36,9 +36,11 @@ class Strips:
     period : Estimate
         Distance of strips.
     amplitude : Estimate
-        a, the power of the noise taken off its square.
+        a, the power N of the noise taken off its square. Its error is that of the
+        stretches, or √(a² + δ) - a with the deviation δ² = N² + 2 a² N of |c|², if
+        that is larger: where nothing is left of a, stretches agree about it.
     share : Estimate
-        a²/2 over CV² of the profile.
+        a²/2 over CV² of the profile; its error is at least that due to δ.
     p_value : float
         Probability that noise alone has a wave this strong among all that were
         looked at; NaN where there are fewer than 4 stretches.
@@ -104,10 +106,12 @@ def strips(
         block = pixel + _CORRELATION_LENGTHS * memory(waves, pixel)
     profiles, blocks = _profiles(density, pixel, block)
     sizes = blocks.sizes
+    profile = profiles.sum(axis=0) / sizes.sum()
     noise, p_value = _against_noise(profiles / sizes[:, None], search, start)
     values, errors = jackknife(
         lambda means: search.measured(means, start, noise), profiles, sizes
     )
+    errors = np.maximum(errors, _errors_of_noise(values, noise, profile))
     found = [
         Estimate(value, error, blocks.n_blocks, density.shape[0], blocks.reason)
         for value, error in zip(values, errors, strict=True)
@@ -141,6 +145,17 @@ def _against_noise(
         return 0.0, 0.0 if abs(waves.mean()) > 0 else 1.0
     ratio = n * abs(waves.mean()) ** 2 / scatter
     return scatter / n, min(1.0, search.n_tried * float(f.sf(ratio, 2, 2 * (n - 1))))
+
+
+def _errors_of_noise(values: Array, noise: float, profile: Array) -> Array:
+    """Errors of period, amplitude and share that the deviation of |c|² makes."""
+    _, amplitude, share = values
+    deviation = np.sqrt(noise**2 + 2 * amplitude**2 * noise)
+    variance = float(np.var(profile / profile.mean()))
+    # The variance of the profile grows with the power of the wave.
+    of_share = deviation / 2 * (1.0 - share) / variance if variance > 0 else 0.0
+    of_amplitude = np.sqrt(amplitude**2 + deviation) - amplitude
+    return np.array([0.0, of_amplitude, max(of_share, 0.0)])
 
 
 class _Search:
