@@ -51,14 +51,14 @@ def _print_variation(web: Web, zones: tuple[float, ...] | None) -> None:
     rows = []
     for zone in zones_for(image) if zones is None else zones:
         found: Any = web.coefficient_of_variation(float(zone))
-        rows.append((f"{factor * zone:g} {unit}".rstrip(), f"{_said(found, 100.0)} %"))
+        rows.append((f"{factor * zone:g} {unit}".rstrip(), _said(found, 100.0, " %")))
     print_table(("zone", "CV"), rows)
 
 
-def _said(found: Estimate, factor: float = 1.0) -> str:
+def _said(found: Estimate, factor: float = 1.0, unit: str = "") -> str:
     """Return value ± standard error; the error is said to be unknown where it is."""
     value, error = factor * float(found), factor * found.standard_error
     if math.isnan(error):
-        return f"{value:.4g} (error unknown)"
+        return f"{value:.4g}{unit} (error unknown)"
     places = max(0, 1 - math.floor(math.log10(error))) if error > 0 else 3
-    return f"{value:.{places}f} ± {error:.{places}f}"
+    return f"{value:.{places}f} ± {error:.{places}f}{unit}"
