@@ -15,6 +15,7 @@ from fpsolve.cli.config import (
     EXAMPLES,
     PathsConfig,
     RunConfig,
+    WebConfig,
     example_path,
     load_config,
     read_config,
@@ -143,7 +144,7 @@ def test_examples_build_and_survive_writing(name):
 def test_the_configurations_in_the_documentation_build():
     page = Path(__file__).parents[2] / "docs" / "command_line.md"
     blocks = re.findall(r"```toml\n(.*?)```", page.read_text("utf-8"), re.DOTALL)
-    run, smooth, process, paths = blocks
+    run, smooth, process, paths, web = blocks
     assert read_config(run).build().scheme.options["positive"]
     ends = "[potential]\nkind = 'quadratic'\n" + run[run.index("[run]") :]
     start = run[run.index("[initial]") : run.index("[scheme]")]
@@ -153,6 +154,9 @@ def test_the_configurations_in_the_documentation_build():
     assert read_config(process + rest).build().model.belt_speed == 0.1
     sampled = read_config(process + paths, kind=PathsConfig).build()
     assert sampled.model.belt_speed == 0.1
+    laid = read_config(web, kind=WebConfig).build()
+    assert laid.model.relaxation_length == 0.002
+    assert laid.arguments["titer"] == 1.5e-4
 
 
 def test_the_first_example_is_the_one_of_the_paper():
