@@ -15,6 +15,7 @@ from fpsolve.evolution.series import SERIES, Series
 from fpsolve.grids import diagnostics
 from fpsolve.grids.circulation import Circulation, obeys_circulation_law, remaining
 from fpsolve.grids.phase_space import PhaseSpaceGrid
+from fpsolve.grids.reference import as_field, reference_sum
 from fpsolve.grids.row_sums import SMALLEST, RowFunctionals, inverse_of
 from fpsolve.model.laydown import LayDownModel
 from fpsolve.model.potentials.at_points import value_at
@@ -156,8 +157,8 @@ class Recorder:
         self.inverse: Array | None = None
         if reference is not None and np.ndim(reference) == 2:
             # Near equilibrium p is r normalised on this grid: logarithms are small.
-            field = diagnostics.as_field(reference, grid)
-            total = diagnostics.reference_sum(field, grid) * grid.cell_volume
+            field = as_field(reference, grid)
+            total = reference_sum(field, grid) * grid.cell_volume
             self.ratio = 1.0 / total if total > 0.0 else np.nan
             self.inverse = inverse_of(reference, self.ratio)
         if self.inverse is not None and given is None:

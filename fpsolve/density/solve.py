@@ -26,7 +26,7 @@ from fpsolve.density.solution import Solution
 from fpsolve.density.tolerances import Tolerances
 from fpsolve.evolution.call import Call, Kept
 from fpsolve.evolution.schedule import Schedule, checked_stops, make_schedule
-from fpsolve.grids.diagnostics import checked_reference
+from fpsolve.grids.reference import checked_reference
 
 if TYPE_CHECKING:
     from fpsolve.density.checkpoints.keeper import CheckpointKeeper
@@ -96,7 +96,8 @@ def solve(
         density is at least that.
     reference : ndarray, optional
         Density the entropy is relative to; p_S by default, and nothing of a smooth
-        fibre, for which p_S is not stationary.
+        fibre, for which p_S is not stationary: that of `steady_state(scheme, ds=ds)`
+        is what the run tends to. Below zero, up to 1e-3 of the mass, it counts as zero.
     record_every : int
         Steps between two records. Steps in between are cheaper: neighbouring half
         steps merge.

@@ -79,7 +79,8 @@ def steady_state(
     recycled Krylov iteration on half of the cells, three quarters, and all. Conserved:
     mass. Steps are shortened until their error is a fifth of `error_tolerance`; the
     cells and the box are as given, so that their errors can only be estimated: compare
-    `errors`.
+    `errors`. Where a scheme corrects what is read, as `smooth_drift_kick` does, the
+    density is what `solve` records of one that no longer changes.
 
     Parameters
     ----------

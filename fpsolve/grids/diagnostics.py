@@ -8,10 +8,10 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from fpsolve._support.arrays import Array, check_finite_numbers, check_numbers
+from fpsolve._support.arrays import Array
 from fpsolve._support.checks import check_non_negative, check_one_of
-from fpsolve.errors import GridMismatchError
 from fpsolve.grids.phase_space import PhaseSpaceGrid, check_grid
+from fpsolve.grids.reference import as_field, reference_sum
 from fpsolve.grids.row_sums import SMALLEST, RowFunctionals, inverse_of
 from fpsolve.grids.smooth import AnyGrid, SmoothPhaseSpaceGrid
 from fpsolve.grids.smooth_sums import SmoothFunctionals
@@ -265,38 +265,6 @@ def checked(p: Array, grid: AnyGrid) -> Array:
     if not isinstance(grid, SmoothPhaseSpaceGrid):
         check_grid(grid)
     return grid.check(p)
-
-
-def checked_reference(reference: Array, grid: AnyGrid) -> Array:
-    """A reference that is finite, not negative and has mass, as (n1, n2, …)."""
-    reference = check_finite_numbers("reference", reference)
-    as_field(reference, grid)
-    if not (reference.min() >= 0 and reference.max() > 0):
-        raise ValueError(
-            "`reference` must be non-negative with positive mass, got values from "
-            f"{reference.min():g} to {reference.max():g}; the entropy is relative to "
-            "a density."
-        )
-    return reference
-
-
-def as_field(reference: Array, grid: AnyGrid) -> Array:
-    """A reference as (n1, n2, 1) or (n1, n2, n_alpha); with a curvature in full."""
-    if isinstance(grid, SmoothPhaseSpaceGrid):
-        return grid.check(reference, "reference")
-    check_grid(grid)
-    reference = check_numbers("reference", reference)
-    if reference.shape == grid.shape[:2]:
-        return reference[:, :, None]
-    if reference.shape not in (grid.shape, (*grid.shape[:2], 1)):
-        raise GridMismatchError(grid.shape, reference.shape, "reference")
-    return reference
-
-
-def reference_sum(reference: Array, grid: AnyGrid) -> float:
-    """Sum of a reference over all cells of the grid."""
-    repeats = grid.shape[2] // reference.shape[2]
-    return float(reference.sum()) * float(repeats)
 
 
 def slabs(grid: AnyGrid) -> Iterator[slice]:

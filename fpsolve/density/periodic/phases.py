@@ -52,7 +52,7 @@ def at_phases(scheme: Any, found: Stationary, period: float, n: int) -> Phases:
     period : float
     n : int
     """
-    p, apart = found.density, period / n
+    p, apart = found.evolved, period / n
     n_steps = max(1, math.ceil(apart / found.ds * (1 - 1e-9)))
     runs = [
         through_phases(scheme, p, apart, j * n_steps, n) for j in DIVISORS
@@ -67,6 +67,7 @@ def at_phases(scheme: Any, found: Stationary, period: float, n: int) -> Phases:
         for field in (found.step, found.iteration)
     ]
     step = densities - other + carried[0]
+    densities[0] = found.density
     for one in densities:
         one /= diagnostics.mass(one, scheme.grid)
     return Phases(densities, step, carried[1])
@@ -75,15 +76,14 @@ def at_phases(scheme: Any, found: Stationary, period: float, n: int) -> Phases:
 def through_phases(
     scheme: Scheme, p: Array, apart: float, n_steps: int, n: int
 ) -> Array:
-    """p at s = 0 and after every stretch of length `apart`, of n_steps each."""
+    """p at s = 0, and what is read after every stretch `apart` of n_steps each."""
     found = np.empty((n, *p.shape))
     found[0] = p
     with threads_worth_their_wait(p.size):
         state = scheme.start(p)
-        read = getattr(scheme, "evolved", scheme.density)
         for j in range(1, n):
             scheme.advance(state, (j - 1) * apart, apart / n_steps, n_steps)
-            found[j] = read(state)
+            found[j] = scheme.density(state)
     return found
 
 

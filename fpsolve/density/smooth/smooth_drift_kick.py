@@ -113,12 +113,23 @@ class SmoothDriftKick:
         """
         p = self.evolved(state)
         if state.n_steps:
-            share = correction(state.scratch, self.model.relaxation_length)
-            stretched = np.empty_like(p)
-            self.modes.apply(self.modes.stretching, state.values, stretched)
-            stretched *= np.clip(share * self.bend, -LARGEST, LARGEST)[..., None]
-            p += stretched
+            p += self._corrected(state.values, state.scratch)
         return p
+
+    def correction_of(self, p: Array, ds: float) -> Array:
+        """What `density` adds to p where steps of ds have led to it.
+
+        A density that steps leave as it is, `steady_state` looks for one, is recorded
+        with this.
+        """
+        return self._corrected(self.modes.of(p), ds)
+
+    def _corrected(self, values: Array, ds: float) -> Array:
+        share = correction(ds, self.model.relaxation_length)
+        stretched = np.empty(self.grid.shape)
+        self.modes.apply(self.modes.stretching, values, stretched)
+        stretched *= np.clip(share * self.bend, -LARGEST, LARGEST)[..., None]
+        return stretched
 
     def evolved(self, state: State) -> Array:
         """The density that steps go on from; a view that the next step overwrites."""

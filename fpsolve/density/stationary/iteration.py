@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -43,7 +44,9 @@ class Stationary:
     Attributes
     ----------
     density : ndarray, shape (n1, n2, n_alpha)
-        Of mass one.
+        Of mass one, as a run would record it.
+    evolved : ndarray, shape (n1, n2, n_alpha)
+        What steps go on from; another where the scheme corrects what is read.
     step : ndarray, shape (n1, n2, n_alpha)
         Difference to the density of another combination of step lengths.
     iteration : ndarray, shape (n1, n2, n_alpha)
@@ -57,6 +60,7 @@ class Stationary:
     """
 
     density: Array
+    evolved: Array
     step: Array
     iteration: Array
     splitting: Array
@@ -92,7 +96,7 @@ def settled(
         error = size_of(finer.step, scheme)
         before = np.inf if found is None else size_of(found.step, scheme)
         if error < before:
-            found, start = finer, finer.density
+            found, start = finer, finer.evolved
         if error <= goal or not error < GAIN * before:
             break
     assert found is not None
@@ -140,12 +144,29 @@ def stationary(
             step = correct(strides.step_error(images), STEP_ERROR)
             one = correct(strides.splitting(images), STEP_ERROR)
             left, applied = share * correction, strides.n_applications
-            return Stationary(p, step, left, one, rate, ds, applied)
+            found = Stationary(p, p, step, left, one, rate, ds, applied)
+            return as_read(found, strides, images)
         sizes.append(size)
         if not size <= DIVERGED or sizes[-1] > 0.5 * sizes[-PATIENCE:][0]:
             break
         before = size
     raise SteadyStateError(rate, min(residual, ITERATION_SHARE * goal))
+
+
+def as_read(found: Stationary, strides: Strides, images: Sequence[Array]) -> Stationary:
+    """The same with what the scheme adds where a density is read.
+
+    What that adds to the fields like errors depends on the step lengths, as they do.
+    """
+    added = strides.readings(images)
+    if added is None:
+        return found
+    p = found.evolved + strides.answer(added)
+    return replace(
+        found, density=p / diagnostics.mass(p, strides.longest.scheme.grid),
+        step=found.step + strides.step_error(added),
+        splitting=found.splitting + strides.splitting(added),
+    )  # fmt: skip
 
 
 def left_share(

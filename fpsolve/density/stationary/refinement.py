@@ -85,7 +85,7 @@ def start_for(scheme: DriftKick, coarser: Sequence[Stationary]) -> Array:
     """The density of the next coarser grid, or a guess on the first."""
     if not coarser:
         return start_on(scheme.grid, scheme.model)
-    return carried(coarser[-1].density, scheme.grid.shape)
+    return carried(coarser[-1].evolved, scheme.grid.shape)
 
 
 def covering(differences: Sequence[Array]) -> tuple[float, float]:

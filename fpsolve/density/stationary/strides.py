@@ -97,6 +97,14 @@ class Strides:
         """p after the stride, by every step length."""
         return [evolution(p) for evolution in self.evolutions]
 
+    def readings(self, images: Sequence[Array]) -> list[Array] | None:
+        """What is added to the images where they are read; None if nothing is."""
+        correction = getattr(self.longest.scheme, "correction_of", None)
+        if correction is None:
+            return None
+        of_each = zip(images, self.evolutions, strict=True)
+        return [correction(p, one.ds) for p, one in of_each]
+
     def answer(self, images: Sequence[Array]) -> Array:
         """The stride whose stationary density is looked for."""
         return self._combined(images, 0) if self.extrapolate else images[0]
