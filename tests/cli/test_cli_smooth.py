@@ -136,3 +136,42 @@ def test_a_spectrum_of_a_smooth_fibre_without_a_basis_is_a_mistake(fpsolve, tmp_
         "--out", tmp_path,
     )  # fmt: skip
     assert_mistake(answer, "`potential` must be a QuadraticPotential")
+
+
+# A fibre about a belt at rest, of which there is a spectrum.
+AT_REST = CONFIG.replace('kind = "moving_belt"\nspeed = 0.1', 'kind = "fixed_belt"')
+AT_REST = AT_REST.replace("noise = 1.0", "noise = 4.0")
+
+
+def test_a_spectrum_from_the_file_of_a_run_is_that_of_its_model(fpsolve, tmp_path):
+    path = tmp_path / "case.toml"
+    path.write_text(AT_REST, encoding="utf-8")
+    answer = fpsolve(
+        "spectrum", path, "--count", 1, "--tolerance", 1e-3, "--no-figures",
+        "--out", tmp_path,
+    )  # fmt: skip
+    assert answer.exit_code == 0, answer.output
+    model = fp.SmoothLayDownModel(fp.QuadraticPotential(), 0.2, 4.0)
+    found = fp.load(tmp_path / "spectrum.nc")
+    assert found.model == model
+    assert found.gap == fp.spectral_gap(model, tolerance=1e-3)
+    assert found.provenance["command"].startswith("fpsolve spectrum case.toml --count")
+    assert "relaxation_length = 0.2" in found.provenance["configuration"]
+
+
+def test_a_spectrum_takes_its_model_from_a_file_or_from_options(fpsolve, tmp_path):
+    path = tmp_path / "case.toml"
+    path.write_text(AT_REST, encoding="utf-8")
+    for option, value in (("--noise", 1.0), ("--sigma1", 1), ("--belt-speed", 0)):
+        answer = fpsolve("spectrum", path, option, value, "--out", tmp_path / "out")
+        assert_mistake(answer, f"`{option}` must not be given beside a file")
+
+
+def test_a_spectrum_from_a_file_with_a_mistake_names_section_and_key(fpsolve, tmp_path):
+    path = tmp_path / "case.toml"
+    path.write_text(AT_REST.replace("relaxation_length", "length"), encoding="utf-8")
+    answer = fpsolve("spectrum", path, "--out", tmp_path / "out")
+    assert_mistake(answer, "relaxation_length")
+    path.write_text(CONFIG, encoding="utf-8")
+    answer = fpsolve("spectrum", path, "--out", tmp_path / "out")
+    assert_mistake(answer, "the belt at rest")
