@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.signal import lfilter
 from straight_fibres import correlated_field, web_of_sticks
 
 from fpsolve.web.statistics.spectrum import power_spectrum
@@ -138,6 +139,58 @@ def test_noise_alone_is_seldom_called_a_strip():
     assert np.sum(p_values < 0.05) <= 10 + 3 * 3.1
     # And it is no constant: half of the noise has a wave below one half.
     assert np.mean(p_values < 0.9) > 0.2
+
+
+def remembering(generator, shape, length):
+    """Noise whose correlation e^{-h/length} along the machine is a fibre's memory."""
+    kept, cells = np.exp(-1 / length), shape[1] + int(8 * length)
+    noise = uniform(generator, 0.1, (shape[0], cells))
+    field = lfilter([np.sqrt(1 - kept**2)], [1, -kept], noise, axis=1)
+    return 1 + field[:, -shape[1] :]
+
+
+@pytest.mark.parametrize(("length", "n_webs"), [(2.0, 200), (5.0, 200), (48.0, 50)])
+def test_webs_that_remember_for_long_are_not_called_striped(length, n_webs):
+    generator = np.random.default_rng(10)
+    webs = [remembering(generator, (48, 96), length) for _ in range(n_webs)]
+    p_values = np.array([strips(web, 1.0).p_value for web in webs])
+    # Counted 1 % and 5 %, each with three standard errors of the count.
+    for level in (0.01, 0.05):
+        allowed = level * n_webs + 3 * np.sqrt(level * n_webs)
+        assert np.sum(p_values < level) <= allowed
+    # Memories of a fifteenth and less of the web leave it some judgement, those of
+    # half of it none.
+    assert np.isnan(p_values).mean() == pytest.approx(1.0 * (length > 10), abs=0.6)
+
+
+def test_a_memory_as_long_as_the_web_leaves_no_p_value_and_says_so():
+    web = remembering(np.random.default_rng(11), (48, 96), 96.0)
+    found = strips(web, 1.0)
+    assert np.isnan(found.p_value)
+    assert np.isnan(found.amplitude.standard_error)
+    assert "4 are needed; lay a larger web" in found.amplitude.reason
+
+
+def test_strips_in_a_web_that_remembers_are_found():
+    web = remembering(np.random.default_rng(12), (48, 400), 5.0)
+    place = np.arange(48) + 0.5
+    web += 0.1 * np.cos(2 * np.pi * place / 6.0)[:, None]
+    found = strips(web, 1.0)
+    assert found.p_value < 1e-6
+    assert abs(found.amplitude - 0.1) < 4 * found.amplitude.standard_error
+
+
+def test_the_error_of_no_amplitude_is_that_of_the_noise():
+    generator = np.random.default_rng(13)
+    webs = [1 + uniform(generator, 0.3, (40, 80)) for _ in range(100)]
+    found = [strips(web, 1.0, period=8.0) for web in webs]
+    # Noise of 0.3 in 3200 pixels: E|c|² = 4 × 0.09/3200, known to a twelfth from some
+    # 50 stretches; half of it is left of each direction.
+    least = 0.7 * np.sqrt(2 * 0.09 / 3200)
+    assert min(one.amplitude.standard_error for one in found) > least
+    inside = [one.amplitude.interval()[0] <= 0.0 for one in found]
+    # Of 100, 95 ± 2.2 are expected.
+    assert np.mean(inside) > 0.95 - 4 * 0.022
 
 
 def test_a_period_that_is_known_is_the_only_one_tried():

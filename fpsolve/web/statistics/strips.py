@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -23,6 +24,12 @@ _STRETCHES, _CORRELATION_LENGTHS = 64, 3.0
 _OVERSAMPLED = 4
 # Periods that a web must hold, for a period to be one.
 _FEWEST_PERIODS = 2
+# Resolved frequencies on either side of one, whose memories are averaged: that of a
+# single wave is known badly, and the strongest is the one that seems to forget early.
+_NEIGHBOURS = 4
+# By which a mean that is taken off a series of length L shortens a memory ℓ: what is
+# found is ℓ (1 - 4 ℓ/L) or so where four stretches just fit.
+_SHORTENED = 4.0
 # Halvings of the distance to the best frequency: 1e-6 of what is resolved.
 _HALVINGS = 20
 
@@ -68,6 +75,11 @@ def strips(
     The web is cut into independent stretches across the strips. Their c scatter, which
     tells noise from strips: without any, |c|² over the scatter has the law
     F(2, 2(n - 1)) at one frequency, and `p_value` counts all frequencies (Bonferroni).
+    What neighbouring stretches share is made up for in scatter and errors.
+    A web cannot tell a strip from a memory as long as itself: where the memory found
+    is longer than a sixteenth of it, fewer than 4 stretches are independent, and errors
+    and `p_value` are NaN, with a reason. Of webs without strips about one in a hundred
+    has p < 0.01, however long they remember.
     A strongest wave exists in every web; without a small `p_value` it is noise, and its
     amplitude the largest of many.
 
@@ -82,8 +94,9 @@ def strips(
         The period, if it is known; by default the strongest is looked for, from two
         pixels to half the web.
     block : float, optional
-        Length of a stretch; by default three correlation lengths of the strongest wave
-        along the strips, and a 64th of the web at least.
+        Length of a stretch; by default three correlation lengths of the waves near
+        the strongest one along the strips, and a 64th of the web at least. Stretches
+        of a given length are taken for independent.
 
     Returns
     -------
@@ -101,17 +114,19 @@ def strips(
         density = density.T
     search = _Search(density.shape[0], pixel, period)
     start = search.strongest(density.mean(axis=1))
+    lasting = 0.0 if block is not None else _lasting(density, search, start)
     if block is None:
-        waves = search.wave(density.T, start)[:, None]
-        block = pixel + _CORRELATION_LENGTHS * memory(waves, pixel)
-    profiles, blocks = _profiles(density, pixel, block)
-    sizes = blocks.sizes
-    profile = profiles.sum(axis=0) / sizes.sum()
-    noise, p_value = _against_noise(profiles / sizes[:, None], search, start)
+        longest = pixel * density.shape[1]
+        block = min(pixel + _CORRELATION_LENGTHS * lasting, longest)
+    profiles, blocks = _profiles(density, pixel, block, lasting)
+    sizes, inflation = blocks.sizes, blocks.inflation
+    means = profiles / sizes[:, None]
+    noise, p_value = _against_noise(means, search, start, inflation)
     values, errors = jackknife(
         lambda means: search.measured(means, start, noise), profiles, sizes
     )
-    errors = np.maximum(errors, _errors_of_noise(values, noise, profile))
+    least = _errors_of_noise(values, noise, density.mean(axis=1))
+    errors = np.maximum(math.sqrt(inflation) * errors, least)
     found = [
         Estimate(value, error, blocks.n_blocks, density.shape[0], blocks.reason)
         for value, error in zip(values, errors, strict=True)
@@ -119,18 +134,37 @@ def strips(
     return Strips(found[0], found[1], found[2], p_value, direction)
 
 
-def _profiles(density: Array, pixel: float, block: float) -> tuple[Array, Blocks]:
-    """Return the summed profile of every stretch, and the stretches as blocks."""
+def _lasting(density: Array, search: _Search, frequency: float) -> float:
+    """Return ℓ - x of the waves near one, along the strips; infinite if not to be had.
+
+    A mean that is taken off hides the end of a memory, which is made up for.
+    """
+    waves = search.wave(density.T, search.neighbours(frequency))
+    found = memory(waves, search.pixel)
+    left = 1.0 - _SHORTENED * found / (search.pixel * density.shape[1])
+    return found / left if left > 0 else math.inf
+
+
+def _profiles(
+    density: Array, pixel: float, block: float, lasting: float
+) -> tuple[Array, Blocks]:
+    """Return the summed profile of every stretch, and the stretches as blocks.
+
+    Stretches of length D leave 1 - (ℓ - x)/(2 D) of the variance of a mean.
+    """
     n = density.shape[1]
     side = max(check_positive("block", block), pixel * n / _STRETCHES)
     # One cell per column, which holds the whole profile.
     stretches = cut((1, n), pixel, (pixel, max(side, pixel)))
-    starts = np.arange(stretches.counts[1]) * n // stretches.counts[1]
+    count = stretches.counts[1]
+    starts = np.arange(count) * n // count
+    shared = min(lasting * count / (2.0 * pixel * n), 0.5)
+    stretches = replace(stretches, inflation=1.0 / (1.0 - shared))
     return np.add.reduceat(density, starts, axis=1).T, stretches
 
 
 def _against_noise(
-    profiles: Array, search: _Search, frequency: float
+    profiles: Array, search: _Search, frequency: float, inflation: float
 ) -> tuple[float, float]:
     """Return the power of the noise in the mean |c|², and the p value of its wave."""
     from scipy.stats import f
@@ -143,6 +177,7 @@ def _against_noise(
     # Equal stretches, as of a web that was made up.
     if scatter == 0.0:
         return 0.0, 0.0 if abs(waves.mean()) > 0 else 1.0
+    scatter *= inflation
     ratio = n * abs(waves.mean()) ** 2 / scatter
     return scatter / n, min(1.0, search.n_tried * float(f.sf(ratio, 2, 2 * (n - 1))))
 
@@ -162,7 +197,7 @@ class _Search:
     """Frequencies that a profile of n pixels can tell apart, or a single one."""
 
     def __init__(self, n: int, pixel: float, period: float | None) -> None:
-        self.n, self.places = n, pixel * (np.arange(n) + 0.5)
+        self.n, self.pixel, self.places = n, pixel, pixel * (np.arange(n) + 0.5)
         self.spacing = 1.0 / (n * pixel * _OVERSAMPLED)
         shortest, longest = 2.0 * pixel, n * pixel / _FEWEST_PERIODS
         if n < 4 * _FEWEST_PERIODS:
@@ -189,9 +224,19 @@ class _Search:
         """Number of frequencies looked at."""
         return len(self.frequencies)
 
+    def neighbours(self, frequency: float) -> Array:
+        """Return those nearest to one of which n pixels hold whole periods."""
+        nearest, last = round(frequency * self.n * self.pixel), self.n // 2
+        first = max(_FEWEST_PERIODS, nearest - _NEIGHBOURS)
+        numbers = np.arange(first, min(last, nearest + _NEIGHBOURS) + 1)
+        return np.asarray(numbers / (self.n * self.pixel))
+
     def wave(self, profiles: Array, frequency: Any) -> Complex:
-        """Return c of profiles on the last axis, each less its mean."""
-        turns = np.exp(-2j * np.pi * frequency * self.places)
+        """Return c of profiles on the last axis, each less its mean, there frequencies.
+
+        A single frequency has no axis.
+        """
+        turns = np.exp(-2j * np.pi * np.multiply.outer(self.places, frequency))
         centred = profiles - profiles.mean(axis=-1, keepdims=True)
         return np.asarray(2.0 / self.n * centred @ turns)
 
@@ -212,7 +257,7 @@ class _Search:
         step = self.spacing
         for _ in range(_HALVINGS):
             tried = frequency + step * np.array([-1.0, 0.0, 1.0])
-            powers = [abs(self.wave(profile, one)) for one in tried]
+            powers = np.abs(self.wave(profile, tried))
             frequency, step = float(tried[int(np.argmax(powers))]), step / 2
         return frequency
 
