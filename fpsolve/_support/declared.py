@@ -29,10 +29,11 @@ _NUMBERS = (
     "ds", "s_start", "false_alarm", "gap", "gap_error", "essential", "noise", "radius",
     "g_max", "slow_length", "belt_speed_scale", "fixed_speed", "expected_order",
     "tolerance", "s_end", "belt_speed", "titer", "period", "bending",
+    "pixel",
 )  # fmt: skip
 _INTEGERS = (
     "n_paths", "n_steps", "n_cells", "kept", "agrees", "quick", "signed",
-    "fpsolve_format", "n_energies", "extrapolated",
+    "fpsolve_format", "n_energies", "extrapolated", "n_webs",
 )  # fmt: skip
 # JSON: objects, and what is known of their entries.
 _TABLES = (

@@ -118,6 +118,11 @@ CAPTIONS = {
         "Distances against R; thin lines: the slope that is derived.",
         "Distances to the limit against the relaxation length, logarithmic",
     ),
+    "web-homogeneity/zones": (
+        "CV of square zones against their side; lines: predicted; markers: laid webs "
+        "with standard errors.",
+        "CV of laid and predicted webs against the side of zones, logarithmic",
+    ),
     "small-noise/distances": (
         "Distances against the small parameter; thin lines: the slope that is derived.",
         "Distances to the limit against the small parameter, logarithmic",

@@ -13,6 +13,7 @@ from .ergodicity import plot_ergodic_averages as plot_ergodic_averages
 from .fibres import plot_fibre as plot_fibre
 from .fibres import plot_nozzles as plot_nozzles
 from .files import save_figures as save_figures
+from .homogeneity import plot_web_homogeneity as plot_web_homogeneity
 from .hydrodynamic import plot_hydrodynamic as plot_hydrodynamic
 from .limits import plot_large_noise as plot_large_noise
 from .limits import plot_white_noise as plot_white_noise

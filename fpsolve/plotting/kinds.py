@@ -20,6 +20,7 @@ from fpsolve.plotting.ensembles import plot_ensemble
 from fpsolve.plotting.entropy import has_entropy, plot_entropy
 from fpsolve.plotting.ergodicity import plot_ergodic_averages
 from fpsolve.plotting.fibres import plot_fibre
+from fpsolve.plotting.homogeneity import plot_web_homogeneity
 from fpsolve.plotting.hydrodynamic import plot_hydrodynamic
 from fpsolve.plotting.limits import plot_large_noise, plot_white_noise
 from fpsolve.plotting.marginals import plot_marginals
@@ -166,6 +167,7 @@ FIGURES: dict[str, Callable[[Any], Figures]] = {
     ),
     "large-noise": each(distances=(plot_large_noise, known("distance"))),
     "white-noise": each(distances=(plot_white_noise, known("distance"))),
+    "web-homogeneity": each(zones=(plot_web_homogeneity, known("z"))),
     "small-noise": each(distances=(plot_small_noise, known("distance"))),
     "small-noise-spectrum": each(spectrum=(plot_small_noise_spectrum, always)),
     "energy-tables": of_energy_tables,

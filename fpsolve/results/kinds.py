@@ -143,6 +143,13 @@ KINDS = {
         attributes=(*_POTENTIAL, "noise", "p0", "s_end", "belt_speed", "n_paths",
                     "quick"),
     ),
+    "web-homogeneity": Kind(
+        "variations of laid and predicted webs",
+        "fpsolve.studies.webs.homogeneity:web_homogeneity", counts="cases",
+        variables=(*_CASES, "belt_speed", "spacing", "zone", "predicted",
+                   "predicted_error", "simulated", "standard_error", "z"),
+        attributes=(*_POTENTIAL, "positions", "n_webs", "pixel", "tolerance"),
+    ),
     "small-noise": Kind(
         "distances to the limit of small noise",
         "fpsolve.studies.limits.small_noise:small_noise_limit", counts="cases",

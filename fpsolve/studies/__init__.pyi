@@ -22,3 +22,4 @@ from .rates.poisson import asymptotic_variances as asymptotic_variances
 from .rates.rate_versus_noise import rate_versus_noise as rate_versus_noise
 from .sweeps.sweep import Case as Case
 from .sweeps.sweep import sweep as sweep
+from .webs.homogeneity import web_homogeneity as web_homogeneity

@@ -144,6 +144,10 @@ MAKERS = {
         QUADRATIC, 1.5, [0.1, 0.2], s_end=0.5, n_paths=50, quick=True, workers=0,
         parts=["paths"],
     ),
+    "web-homogeneity": lambda: studies.web_homogeneity(
+        QUADRATIC, [2.0], [0.5], [0.5], zones=[0.5, 2.0], n_webs=2, tolerance=0.05,
+        workers=0,
+    ),
     "small-noise": lambda: studies.small_noise_limit(
         QUADRATIC, [0.8], belt_speed_scales=[0.0], slow_length=0.25, n_paths=50,
         quick=True,

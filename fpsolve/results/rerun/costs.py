@@ -157,6 +157,15 @@ def _of_white_noise(dataset: xr.Dataset, about: Mapping[str, Any]) -> Held:
         yield name, about.get(name)
 
 
+def _of_homogeneity(dataset: xr.Dataset, about: Mapping[str, Any]) -> Held:
+    yield "noises", _values(dataset, "noise")
+    yield "belt_speeds", _values(dataset, "belt_speed")
+    yield "spacings", _values(dataset, "spacing")
+    yield "zones", _values(dataset, "zone")
+    for name in ("n_webs", "pixel", "tolerance"):
+        yield name, about.get(name)
+
+
 def _of_small_noise(dataset: xr.Dataset, about: Mapping[str, Any]) -> Held:
     yield "noises", _values(dataset, "noise")
     yield "belt_speed_scales", _values(dataset, "belt_speed_scale")
@@ -201,6 +210,7 @@ _HELD: dict[str, Callable[[Any, Mapping[str, Any]], Held]] = {
     "rate_versus_noise": _of_rates,
     "large_noise_limit": _of_large_noise,
     "white_noise_limit": _of_white_noise,
+    "web_homogeneity": _of_homogeneity,
     "small_noise_limit": _of_small_noise,
     "small_noise_spectrum": _of_small_noise_spectrum,
     "ergodic_averages": _of_averages,
