@@ -18,6 +18,7 @@ from fpsolve.cli.info import info
 from fpsolve.cli.limits import limits
 from fpsolve.cli.paths import paths
 from fpsolve.cli.plot import plot
+from fpsolve.cli.predict import predict
 from fpsolve.cli.rate import rate
 from fpsolve.cli.report import report
 from fpsolve.cli.rerun import rerun
@@ -47,6 +48,7 @@ _COMMANDS: dict[Callable[..., None], str] = {
     energy: "energy --noise 0.3 --passage 0.1 0.5",
     limits: "limits small-noise --quick",
     web: "web --out results",
+    predict: "predict --noise 2 --belt-speed 0.2 --spacing 0.5",
     plot: "plot results/laydown.nc --movie",
     report: "report results/laydown.nc",
     rerun: "rerun results/laydown.nc --out again",

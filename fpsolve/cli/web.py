@@ -24,7 +24,7 @@ from fpsolve.cli.potentials import PARAMETERS, Kind, Noise, Parameters, with_par
 if TYPE_CHECKING:
     from fpsolve.cli.config.web import WebConfig
 
-__all__ = ["web"]
+__all__ = ["BeltSpeed", "Spacing", "options_of_model", "tables_of", "web"]
 
 _OF_FILE = "of the file"
 # What belongs to a model without units, which stands in the place of a file.
@@ -134,7 +134,7 @@ def web(
             "model": {"noise": noise, "relaxation_length": relaxation_length},
             "curve": {"kind": "moving_belt", "speed": belt_speed},
         }
-        tables = _tables(config, physics, _options_of_model(context))
+        tables = tables_of(config, physics, options_of_model(context))
         chosen = _chosen(tables, given, no_figures)
         seed_from = "from the configuration" if seed is None else "from `--seed`"
         if chosen.web.seed is None:
@@ -143,7 +143,7 @@ def web(
         _lay(frame, chosen, seed_from)
 
 
-def _options_of_model(context: typer.Context) -> list[str]:
+def options_of_model(context: typer.Context) -> list[str]:
     """The options of the model that were written on the command line."""
     sources = {name: context.get_parameter_source(name) for name in _MODEL}
     return [
@@ -153,7 +153,7 @@ def _options_of_model(context: typer.Context) -> list[str]:
     ]
 
 
-def _tables(
+def tables_of(
     config: Path | None, physics: dict[str, Any], options: list[str]
 ) -> dict[str, Any]:
     """What a file says, or options of the model, or the packaged example."""

@@ -89,7 +89,7 @@ class WebConfig(Description):
         MemoryLimitError
             If the pixels would not fit into memory.
         """
-        model = self._laid()
+        model = self.laid_model()
         with named_section("web"):
             check_pixels(self.web.window, None)
             arguments = self.web.model_dump(exclude=_AFTERWARDS)
@@ -102,7 +102,8 @@ class WebConfig(Description):
         """Return the configuration with the seed of `problem` in it."""
         return self.changed("web", seed=problem.arguments["seed"])
 
-    def _laid(self) -> FibreModel | Process:
+    def laid_model(self) -> FibreModel | Process:
+        """Return the model, or the process whose lengths are metres."""
         if self.process is None:
             return self.build_model()
         with named_section("process"):

@@ -115,6 +115,16 @@ WEB = [
     row("web --out notes.txt", "got `notes.txt`", "`--out` must be a folder"),
     row("web --threads 9999", "got 9999", "must be at most"),
 ]
+PREDICT = [
+    row("predict none.toml", "got `none.toml`", "must be an existing TOML file"),
+    row("predict --spacing nan", "got nan", "`spacing` must be positive"),
+    row("predict --positions hexagonal", "got 'hexagonal'", "`positions` must be"),
+    row("predict --zone nan", "nan", "`zones` must be"),
+    row("predict --band 1", "got '1'", "must be SHORT:LONG"),
+    row("predict --tolerance 0", "got 0", "`tolerance` must be positive"),
+    row("predict --belt-speed 10", "got 10", "strictly between -1 and 1"),
+    row("predict --out notes.txt", "got `notes.txt`", "`--out` must be a folder"),
+]
 CHECK = [
     row("check none.toml", "got `none.toml`", "must be an existing TOML file"),
     row("check run.toml --n-paths 5", "got 5", "at least 1000"),
@@ -214,6 +224,6 @@ COMPARE = [
 ]
 
 MISTAKES = [
-    *RUN, *PATHS, *WEB, *CHECK, *RATE, *SPECTRUM, *ENERGY, *LIMITS, *PLOT, *RESUME,
-    *REPORT, *RERUN, *COMPARE,
+    *RUN, *PATHS, *WEB, *PREDICT, *CHECK, *RATE, *SPECTRUM, *ENERGY, *LIMITS, *PLOT,
+    *RESUME, *REPORT, *RERUN, *COMPARE,
 ]  # fmt: skip

@@ -1,0 +1,167 @@
+"""`fpsolve predict`: how even a web will be, without laying it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from fpsolve.cli.command import command_line
+from fpsolve.cli.console import print_pairs, print_table
+from fpsolve.cli.frame import command
+from fpsolve.cli.options import POSITIONS, NoFigures, Out, proposing
+from fpsolve.cli.potentials import PARAMETERS, Kind, Noise, Parameters, with_parameters
+from fpsolve.cli.web import BeltSpeed, Spacing, options_of_model, tables_of
+
+if TYPE_CHECKING:
+    from fpsolve.cli.config.web import WebConfig
+    from fpsolve.web.prediction import WebPrediction
+
+__all__ = ["predict"]
+
+# Sides of zones in throwing ranges, where none are given.
+_ZONES = (0.1, 0.3, 1.0, 3.0, 10.0)
+Config = Annotated[
+    Path | None,
+    typer.Argument(
+        metavar="CONFIG.toml",
+        help="TOML file of `fpsolve web`; without it the packaged example in SI units, "
+        "or what options of the model say.",
+    ),
+]
+Positions = Annotated[
+    str | None,
+    typer.Option(
+        help="Spinning positions: regular or random.", metavar="WORD",
+        show_default="of the file", autocompletion=proposing(*POSITIONS),
+    ),
+]  # fmt: skip
+Zone = Annotated[
+    list[float] | None,
+    typer.Option(
+        help="Side of square zones; may be given several times.",
+        show_default="of the file, or 0.1 to 10 throwing ranges",
+    ),
+]
+Band = Annotated[
+    list[str] | None,
+    typer.Option(
+        metavar="SHORT:LONG",
+        help="Band of wavelengths for the cloudiness; may be given several times.",
+    ),
+]
+Tolerance = Annotated[float, typer.Option(help="Relative error of every CV.")]
+
+
+@with_parameters
+def predict(
+    context: typer.Context,
+    config: Config = None,
+    out: Out = Path("results"),
+    spacing: Spacing = None,
+    positions: Positions = None,
+    zone: Zone = None,
+    band: Band = None,
+    tolerance: Tolerance = 5e-3,
+    potential: Kind = "quadratic",
+    noise: Noise = 1.0,
+    belt_speed: BeltSpeed = 0.1,
+    parameters: Parameters = PARAMETERS,
+    no_figures: NoFigures = False,
+) -> None:
+    """Predict how even a web will be, from the generator of one fibre.
+
+    No fibre is laid. Prints the variation of square zones, MD/CD ratio and cloudiness
+    with bounds of their errors, and writes them and a figure. Lengths are metres for a
+    process in SI units, else throwing ranges. Of a file sections [process] or
+    [potential], [model] and [curve] count, and of [web] spacing, positions and zones.
+    """
+    with command(out, figures=not no_figures) as frame:
+        from fpsolve.plotting.predicted_web import plot_predicted_web
+        from fpsolve.web.predict import predict_web
+
+        made, options = parameters.make(potential), options_of_model(context)
+        physics = {
+            "potential": made.to_dict(),
+            "model": {"noise": noise},
+            "curve": {"kind": "moving_belt", "speed": belt_speed},
+        }
+        chosen = _config(tables_of(config, physics, options))
+        name = f"{chosen.output.name}-prediction"
+        frame.claim(f"{name}.nc", f"{name}.png")
+        asked: dict[str, Any] = {
+            "spacing": chosen.web.spacing if spacing is None else spacing,
+            "positions": chosen.web.positions if positions is None else positions,
+            "zones": zone or chosen.web.zones or _default_zones(chosen),
+            "bands": [_pair(one) for one in band or ()],
+            "tolerance": tolerance,
+        }
+        model: Any = chosen.laid_model()
+        found = predict_web(model, **asked)
+        print_prediction(found, "" if chosen.process is None else " m")
+        toml = chosen.to_toml()
+        of_model = {"potential": made, "noise": noise, "belt_speed": belt_speed}
+        used = command_line(
+            "predict", *([] if config is None else [str(config)]), spacing=spacing,
+            positions=positions, zone=zone, band=band, tolerance=tolerance,
+            **(of_model if options else {}),
+        )  # fmt: skip
+        about = {**found.provenance, "configuration": toml, **used}
+        frame.finish(replace(found, provenance=about), f"{name}.nc")
+        frame.figure(plot_predicted_web, found, name=f"{name}.png")
+
+
+def print_prediction(found: WebPrediction, unit: str) -> None:
+    """Print variation, cloudiness and ratio with bounds of their errors."""
+    print_table(("zone", "CV"), [
+        (f"{zone:g}{unit}", f"{_said(cv, error)} %")
+        for zone, cv, error in zip(found.zones, found.cv, found.errors, strict=True)
+    ])  # fmt: skip
+    if found.cloudiness.size:
+        print_table(("wavelengths", "part of CV²"), [
+            (f"{short:g} to {long:g}{unit}", f"{_said(part, error)} %")
+            for short, long, part, error in zip(
+                found.shortest, found.longest, found.cloudiness,
+                found.cloudiness_errors, strict=True,
+            )
+        ])  # fmt: skip
+    per = f"{unit}⁻¹" if unit else ""
+    pairs = [
+        ("length per area", f"{found.mean:.6g}{per}"),
+        ("MD/CD", f"{found.machine_cross_ratio:.4f}"),
+    ]
+    print_pairs(pairs)
+
+
+def _config(tables: dict[str, Any]) -> WebConfig:
+    from fpsolve.cli.config.reading import check_config
+    from fpsolve.cli.config.web import WebConfig
+
+    return check_config(tables, "options", WebConfig)
+
+
+def _default_zones(chosen: WebConfig) -> list[float]:
+    from fpsolve.model.process import Process
+
+    model = chosen.laid_model()
+    if isinstance(model, Process):
+        return [zone * max(model.sigma1, model.sigma2) for zone in _ZONES]
+    return list(_ZONES)
+
+
+def _pair(text: str) -> tuple[float, float]:
+    """Return SHORT:LONG as numbers."""
+    words = text.split(":")
+    try:
+        short, long = map(float, words)
+    except ValueError:
+        raise ValueError(
+            f"`--band` must be SHORT:LONG, two wavelengths, got {text!r}."
+        ) from None
+    return short, long
+
+
+def _said(value: float, error: float) -> str:
+    return f"{100 * value:.5g} ± {100 * error:.1g}"
