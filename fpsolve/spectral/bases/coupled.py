@@ -15,7 +15,7 @@ from fpsolve._support.arrays import Complex
 from fpsolve.grids.smooth import SmoothPhaseSpaceGrid
 from fpsolve.model.smooth import SmoothLayDownModel
 from fpsolve.spectral.bases.coupled_blocks import Blocks, coupled, rows
-from fpsolve.spectral.bases.coupled_moments import coupled_moments
+from fpsolve.spectral.bases.coupled_moments import coupled_moments, coupled_one
 from fpsolve.spectral.bases.coupled_states import CoupledStates
 from fpsolve.spectral.bases.coupled_values import coupled_values
 from fpsolve.spectral.bases.curvature import curvature_operators
@@ -63,8 +63,7 @@ class CoupledDiscretisation(SmoothDiscretisation):
 
     model: SmoothLayDownModel
     placement: Placement
-    # The first truncations are coarse.
-    zero: ClassVar[float] = 0.02
+    irregular: ClassVar[bool] = True
 
     @property
     def noise(self) -> float:  # type: ignore[override]
@@ -106,6 +105,10 @@ class CoupledDiscretisation(SmoothDiscretisation):
         """`mass` and SMOOTH_MOMENTS over the mass, of the stationary sector."""
         states = self.states(self.stationary_sector, truncation)
         return coupled_moments(states, vector, self.placement)
+
+    def constants(self, sector: Sector, truncation: Truncation) -> Vector:
+        """Coefficients of 1 of the stationary sector."""
+        return coupled_one(self.states(sector, truncation), self.placement)
 
     def enlarged(self, truncation: Truncation) -> Truncation:
         """One degree more in ξ, two indices and two degrees in κ: L f lies there."""

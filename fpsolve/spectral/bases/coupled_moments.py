@@ -11,7 +11,7 @@ from fpsolve.grids.smooth_sums import SMOOTH_MOMENTS
 from fpsolve.spectral.bases.coupled_states import CoupledStates
 from fpsolve.spectral.bases.placement import Placement
 
-__all__ = ["coupled_moments", "mean_cos2_alpha"]
+__all__ = ["coupled_moments", "coupled_one", "mean_cos2_alpha"]
 
 # Degrees of the observables: squares.
 HIGHEST = 2
@@ -63,6 +63,15 @@ def mean_cos2_alpha(
     flat, plane = one.curvature(0), one.plane()
     square = one.integral(vector, {0: 0.5 * plane, 2: 0.25 * plane}, flat)
     return square / one.integral(vector, {0: plane}, flat)
+
+
+def coupled_one(states: CoupledStates, placement: Placement) -> Array:
+    """Coefficients of 1, even and of M = 0: those pair with p to ∫ p."""
+    one, plain = _Observables(states, placement), states.plain
+    values = one.plane()[plain.m, plain.n] * one.curvature(0)[plain.j]
+    result = np.zeros(states.size)
+    result[: states.offsets[1]] = states.folding.T @ values
+    return result
 
 
 class _Observables:

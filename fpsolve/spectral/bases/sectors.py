@@ -95,8 +95,11 @@ class Discretisation(ABC):
     belt_speed: float = 0.0
     # Of the columns before they are eliminated; None for one that the matrix decides.
     ordering: ClassVar[str | None] = None
-    # Up to here an eigenvalue is the 0 of the constants, in units of a slow rate.
+    # Up to here an eigenvalue is the 0 of the constants, in units of a slow rate,
+    # unless their coefficients tell it.
     zero: ClassVar[float] = 1e-6
+    # Whether truncations grow in several directions that do not converge in step.
+    irregular: ClassVar[bool] = False
 
     @property
     def reversible(self) -> bool:
@@ -117,6 +120,10 @@ class Discretisation(ABC):
     @abstractmethod
     def enlarged(self, truncation: Truncation) -> Truncation:
         """The basis in which L f lies (nearly, for a general B) for f of this one."""
+
+    def constants(self, sector: Sector, truncation: Truncation) -> Vector | None:
+        """Coefficients of 1, where the functions only approximate it; else None."""
+        return None
 
     @abstractmethod
     def harmonics(self, sector: Sector, truncation: Truncation) -> Integers:

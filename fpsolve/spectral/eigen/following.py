@@ -14,7 +14,15 @@ from fpsolve.spectral.eigen.inverses import IteratedInverse, inverse_of
 from fpsolve.spectral.eigen.survey import Mode
 from fpsolve.spectral.work import Work
 
-__all__ = ["compared", "condition", "halves", "left_vector", "next_mode", "slowness"]
+__all__ = [
+    "compared",
+    "condition",
+    "halves",
+    "left_to_come",
+    "left_vector",
+    "next_mode",
+    "slowness",
+]
 
 # Eigenvalues nearer than this share of the rate are compared as a pair.
 PAIR = 0.1
@@ -25,6 +33,8 @@ FAST, FIRST, SLOWEST = 0.5, 0.6, 0.99
 # Scatter of computed eigenvalues, in units of the rounding error of one number.
 ROUNDING = 16 * float(np.finfo(np.float64).eps)
 TINY = 1e-16
+# Of irregular truncations: times the last change, or this share of the one before.
+SAFETY, BEFORE = 2.0, 0.25
 
 
 def next_mode(
@@ -50,10 +60,13 @@ def next_mode(
         truncation=truncation,
         partner=partner,
     )
-    return compared(fine, mode, condition(discretisation, fine, work, inverse))
+    known = condition(discretisation, fine, work, inverse)
+    return compared(fine, mode, known, discretisation.irregular)
 
 
-def compared(fine: Mode, coarse: Mode, condition: float) -> Mode:
+def compared(
+    fine: Mode, coarse: Mode, condition: float, irregular: bool = False
+) -> Mode:
     """The finer mode with its distance to the coarser one, and its error.
 
     Near a double eigenvalue λ = m ± √δ the mean m and δ, not λ, converge smoothly, so
@@ -72,8 +85,23 @@ def compared(fine: Mode, coarse: Mode, condition: float) -> Mode:
             # its root that of √δ.
             if rounding > gap:
                 rounding = math.sqrt(rounding * gap)
-    error = moved if moved <= rounding else moved * slowness(moved, coarse.change)
+    if irregular:
+        error = left_to_come(moved, coarse.change)
+    else:
+        error = moved if moved <= rounding else moved * slowness(moved, coarse.change)
     return replace(fine, change=moved, error=error + rounding, rounding=rounding)
+
+
+def left_to_come(change: float, before: float) -> float:
+    """What is left after two changes of truncations that do not converge in step.
+
+    One change may be small by chance: for R = 0.1, A = 2, v = 0.2 the first is 2e-5 and
+    the distance to the gap 1.7e-4. Infinite, therefore, after one.
+    """
+    if math.isinf(before):
+        return math.inf
+    change = max(change, BEFORE * before)
+    return SAFETY * change * slowness(change, before) if change else 0.0
 
 
 def slowness(change: float, before: float) -> float:

@@ -104,7 +104,8 @@ class Refinement:
         if not same:
             return mode
         nearest = min(same, key=lambda other: abs(other.eigenvalue - mode.eigenvalue))
-        return compared(mode, nearest, condition(self.discretisation, mode, self.work))
+        known = condition(self.discretisation, mode, self.work)
+        return compared(mode, nearest, known, self.discretisation.irregular)
 
     def followed(self, modes: list[Mode], level: int) -> list[Mode]:
         """The modes that are or may be among the first, each to the tolerance."""

@@ -34,7 +34,7 @@ SMOOTH_WORK = 2 * DEFAULT_WORK
 # Errors relative to the rate that most models reach in seconds.
 BASIC, SMOOTH = 1e-10, 1e-6
 # The same on belts and about unequal throwing ranges, where indices are coupled.
-COUPLED = 3e-5
+COUPLED = 1e-4
 # What will do for them where nothing is asked, when the work ends before.
 LARGEST = 1e-3
 # Rounding alone leaves about this, relative to the rate.

@@ -208,7 +208,7 @@ def spectrum(
     tolerance : float, optional
         Largest error of every eigenvalue relative to its rate -Re λ, at least 1e-13;
         by default 1e-10. Of a smooth fibre by default 1e-6, on a belt or about unequal
-        throwing ranges 3e-5, or what the work reaches, but not above 1e-3: `errors`
+        throwing ranges 1e-4, or what the work reaches, but not above 1e-3: `errors`
         say what.
         Close to a double eigenvalue rounding limits the accuracy to about 1e-8; then
         `errors` says so and no exception is raised.

@@ -13,6 +13,7 @@ from fpsolve._support.arrays import Complex
 from fpsolve.model.fibre import FibreModel
 from fpsolve.spectral.bases.choice import orbit_radius
 from fpsolve.spectral.bases.sectors import Discretisation, Sector, Truncation
+from fpsolve.spectral.eigen.constants import SAME, Constants
 from fpsolve.spectral.eigen.eigenvalues import ShiftedInverse, neighbour
 from fpsolve.spectral.work import Work
 
@@ -33,8 +34,6 @@ CHORD, NARROW, WORTH = 0.1, 0.02, 0.25
 CLEARLY = 1e-3
 # Of the eigenvalues of a survey, relative to their distance from the shift.
 TOLERANCE = 1e-8
-# Found from two shifts, an eigenvalue differs by rounding only.
-SAME = 1e-6
 # Modes up to this factor beyond the last one wanted are kept, so that a comparison of
 # truncations sees the neighbours too.
 MARGIN = 1.15
@@ -214,6 +213,7 @@ class Search:
         self.work = work
         self.basis = discretisation
         self.matrix: csc_array = discretisation.matrix(sector, *truncation)
+        self.constants = Constants(discretisation, sector, truncation, scale.rate)
         self.modes: list[Mode] = []
         self.chord = math.inf
 
@@ -262,7 +262,8 @@ class Search:
             # Nothing hides within the last of them, which may have a twin itself.
             whole = n_nearest >= self.matrix.shape[0]
             radius = math.inf if whole else (1 - SAME) * distance[-1]
-            self.add(values, vectors, distance < radius)
+            constant = self.constants.among(values, vectors, inverse.shift)
+            self.add(values, vectors, (distance < radius) & ~constant)
             # With more modes known the strip may end earlier.
             self.cut = min(self.cut, cut_after(self.modes, self.n, self.scale.limit))
             if whole:
@@ -284,8 +285,6 @@ class Search:
         known = np.array([mode.eigenvalue for mode in self.modes], complex)
         tiny = SAME * (np.abs(values) + self.scale.rate)
         new = inside & (values.imag >= 0)
-        if self.sector.has_constants:
-            new &= np.abs(values) > self.basis.zero * self.scale.rate
         if known.size:
             new &= np.abs(values[:, None] - known).min(axis=1) > tiny
         for i in np.flatnonzero(new):
