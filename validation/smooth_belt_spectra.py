@@ -33,7 +33,7 @@ FULL = [
     (1.0, 2.0, 0.1, 1.0),
     (0.3, 8.0, 0.2, 1.0),
 ]
-COARSE, FINE = 1e-2, 1e-3
+COARSE, FINE = 1e-2, 1e-4
 
 
 def fibre(length: float, noise: float, speed: float = 0.0, ratio: float = 1.0):
