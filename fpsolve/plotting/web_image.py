@@ -108,10 +108,13 @@ def holds_fibre(web: Web) -> bool:
 
 def _title(web: Web) -> str:
     """Return the parameters, the spacing, and the base weight if it is known."""
-    spacing = f"$d = {web.spacing:g}$" + (f" {web.unit}" if web.unit else "")
+    if not web.unit:
+        return f"{parameters(web)},  $d = {web.spacing:g}$"
+    # On a line of its own, without which a column is too narrow.
+    spacing = f"$d = {1e3 * web.spacing:.4g}$ mm"
     if web.base_weight is not None:
         spacing += f",  {web.base_weight:.3g} g/m²"
-    return f"{parameters(web)},  {spacing}"
+    return f"{parameters(web)}\n{spacing}"
 
 
 def checked_opacity(opacity: float | None, image: WebImage) -> float:

@@ -84,6 +84,8 @@ def _draw_map(axes: Axes, found: PowerSpectrum, image: WebImage) -> None:
 
 
 def _draw_sections(axes: Axes, found: PowerSpectrum, image: WebImage) -> None:
+    from matplotlib.ticker import NullFormatter
+
     _, factor = image.shown_unit
     sections: list[tuple[Estimates, str, str]] = [
         (found.machine, r"$P(k_1, 0)$", "orange"),
@@ -107,6 +109,8 @@ def _draw_sections(axes: Axes, found: PowerSpectrum, image: WebImage) -> None:
         xscale="log", yscale="log", xlabel=_wave_number(image, r"\|k\|"),
         ylabel=r"$P/\langle m\rangle$" + _in(image, ""),
     )  # fmt: skip
+    # Labels between powers of ten run into each other.
+    axes.xaxis.set_minor_formatter(NullFormatter())
     axes.legend(loc="lower left")
 
 
