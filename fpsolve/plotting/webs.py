@@ -23,6 +23,8 @@ __all__ = ["plot_mass", "plot_web"]
 
 # In inches above and below a map, and beside one with axes and colour bar.
 _AROUND, _BESIDE = 0.55, 1.35
+# Of a title, for each line but the first.
+_LINE = 0.17
 # In per cent; the few pixels with more, where fibres cross, share one colour.
 _BRIGHTEST = 99.5
 
@@ -62,6 +64,7 @@ def plot_web(
             f"`titles` must be one for each of {len(images)} webs, got {len(titles)}."
         )
     height = sum(image.height(PAGE) + _AROUND for image in images)
+    height += _LINE * sum(title.count("\n") for title in titles)
     with drawing(PAGE, height) as figure:
         panels = figure.subplots(len(images), 1, squeeze=False)[:, 0]
         for axes, image, title in zip(panels, images, titles, strict=True):
