@@ -11,6 +11,7 @@ from fpsolve.errors import ToleranceError
 from fpsolve.spectral import Sector, SpectralGap, optimal_noise, spectral_gap
 from fpsolve.spectral.eigen import optimal
 from fpsolve.spectral.eigen.branches import Branch
+from fpsolve.spectral.eigen.family import Family
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -74,7 +75,7 @@ def test_the_best_noise_of_the_linear_potential_is_a_crossing():
         SpectralGap(rate, 1e-4, sector, complex(-rate))
         for rate, sector in zip(rates, (Sector(0, -1), Sector(2)), strict=True)
     )
-    meeting = optimal.Meeting(potential, noises, gaps)
+    meeting = optimal.Meeting(Family(potential), noises, gaps)
     assert meeting.kind == "crossing"
     coarse, fine = meeting.solve(1), meeting.solve(2)
     np.testing.assert_allclose(coarse, fine, rtol=1e-7)
@@ -86,14 +87,15 @@ def test_the_best_noise_of_the_linear_potential_is_a_crossing():
 def test_a_smooth_maximum_is_where_the_derivative_vanishes(monkeypatch):
     # The exact derivative of a branch against a difference quotient.
     gap = spectral_gap(fp.LayDownModel(fp.QuadraticPotential(), 1.2))
-    branch = Branch(fp.QuadraticPotential(), gap.sector, 4, 1.2, gap.eigenvalue)
+    family = Family(fp.QuadraticPotential())
+    branch = Branch(family, gap.sector, 4, 1.2, gap.eigenvalue)
     step = 1e-3
     quotient = (branch.rate(1.2 + step) - branch.rate(1.2 - step)) / (2 * step)
     # Second order in the step.
     assert branch.slope(1.2) == pytest.approx(quotient, abs=1e-5)
     # With a derivative of known zero in its place, the maximum is put there.
     monkeypatch.setattr(Branch, "slope", lambda self, noise: 1.3 - noise)
-    meeting = optimal.Meeting(fp.QuadraticPotential(), (1.2, 1.35), (gap, gap))
+    meeting = optimal.Meeting(family, (1.2, 1.35), (gap, gap))
     assert meeting.kind == "smooth maximum"
     noise, rate = meeting.solve(4)
     assert noise == pytest.approx(1.3, abs=1e-12)
@@ -119,7 +121,7 @@ def test_refusals():
 
 
 def test_a_maximum_at_the_end_of_the_scan_is_not_reported(monkeypatch):
-    monkeypatch.setattr(optimal, "rough_gap", lambda potential, noise: noise)
+    monkeypatch.setattr(optimal, "rough_gap", lambda family, noise: noise)
     with pytest.raises(
         ValueError, match=r"`potential` must have its best noise between 0\.4 and 4"
     ):

@@ -131,6 +131,19 @@ class BodyFrameDiscretisation(SmoothDiscretisation):
         folding = states.folding
         return csc_array(folding.T @ self._unfolded(states, index_of(sector)) @ folding)
 
+    def noise_derivative(self, sector: Sector, truncation: Truncation) -> csc_array:
+        """dL/dA = (A/R²) ∂_κκ, from L(√2 A) - L(A) = (K²/2) ∂_κκ on fixed functions."""
+        states, model = self.states(sector, truncation), self.model
+        loud = math.sqrt(2.0) * model.noise
+        louder = SmoothLayDownModel(model.potential, model.relaxation_length, loud)
+        here, there = (
+            curvature_operators(one, self.curvature, states.curvature).relaxing
+            for one in (model, louder)
+        )
+        same_place = eye_array(states.n_plane)
+        change = kron(same_place, (there - here) * (2.0 / self.noise))
+        return csc_array(states.folding.T @ csc_array(change) @ states.folding)
+
     def _unfolded(self, states: BodyStates, index: int) -> csc_array:
         """L on all states of a total angular index, for M = 0 of both parities."""
         kappa = curvature_operators(self.model, self.curvature, states.curvature)

@@ -19,6 +19,7 @@ from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import diags_array
 
 from fpsolve._support.arrays import Complex
 
@@ -127,7 +128,7 @@ class Discretisation(ABC):
 
     @abstractmethod
     def harmonics(self, sector: Sector, truncation: Truncation) -> Integers:
-        """The harmonic k of every basis function: dL/dA is -A k² on the diagonal."""
+        """The harmonic k of every basis function."""
 
     @abstractmethod
     def matrix(self, sector: Sector, *sizes: int) -> Any:
@@ -148,6 +149,11 @@ class Discretisation(ABC):
         grid: Any,
     ) -> Complex:
         """f on a grid of the phase space, shape `grid.shape`, from its coefficients."""
+
+    def noise_derivative(self, sector: Sector, truncation: Truncation) -> Any:
+        """dL/dA on fixed functions, as a sparse matrix: -A k² on the diagonal."""
+        k = self.harmonics(sector, truncation).astype(float)
+        return diags_array(-self.noise * k**2)
 
     def size(self, sector: Sector, truncation: Truncation) -> int:
         """Number of basis functions."""

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from fpsolve._support.arrays import Complex
-from fpsolve.model.laydown import LayDownModel
-from fpsolve.model.potentials.potential import Potential
-from fpsolve.spectral.bases.choice import discretisation_for
-from fpsolve.spectral.bases.sectors import Discretisation, Sector, Truncation
+from fpsolve.spectral.bases.sectors import Sector, Truncation
 from fpsolve.spectral.eigen.eigenvalues import ShiftedInverse
+from fpsolve.spectral.eigen.family import Family
+from fpsolve.spectral.eigen.following import left_vector
+from fpsolve.spectral.eigen.survey import Mode
 
 __all__ = ["Branch", "PairBranch"]
 
@@ -22,7 +22,7 @@ class Branch:
 
     Parameters
     ----------
-    potential : Potential
+    family : Family
     sector : Sector
     level : int
         Of the truncation; the one for `noise` serves for all A.
@@ -32,14 +32,14 @@ class Branch:
 
     def __init__(
         self,
-        potential: Potential,
+        family: Family,
         sector: Sector,
         level: int,
         noise: float,
         eigenvalue: complex,
     ) -> None:
-        self.potential, self.sector = potential, sector
-        self.truncation: Truncation = self._basis(noise).truncation(level)
+        self.family, self.sector = family, sector
+        self.truncation: Truncation = self.family.basis(noise).truncation(level)
         self.known = {noise: eigenvalue}
 
     def eigenvalue(self, noise: float) -> complex:
@@ -55,20 +55,18 @@ class Branch:
         return -self.eigenvalue(noise).real
 
     def slope(self, noise: float) -> float:
-        """d(-Re λ)/dA = A Re ⟨l, k² r⟩/⟨l, r⟩, l and r left and right eigenvectors."""
+        """d(-Re λ)/dA = -Re ⟨l, ∂L/∂A r⟩/⟨l, r⟩, l and r eigenvectors of Lᵀ and L."""
         value = self.eigenvalue(noise)
         values, vectors = self._near(noise, value + CLEAR * abs(value.real), 3)
         right = vectors[:, np.argmin(np.abs(values - value))]
-        k = self._basis(noise).harmonics(self.sector, self.truncation).astype(float)
-        # Turning α by π takes L to L*.
-        left = np.where(k % 2 == 0, 1.0, -1.0) * right
-        return noise * float(((left @ (k**2 * right)) / (left @ right)).real)
-
-    def _basis(self, noise: float) -> Discretisation:
-        return discretisation_for(LayDownModel(self.potential, noise))
+        basis = self.family.basis(noise)
+        mode = Mode(value, right, self.sector, self.truncation)
+        left = left_vector(basis, mode)
+        change = basis.noise_derivative(self.sector, self.truncation) @ right
+        return -float(((left @ change) / (left @ right)).real)
 
     def _near(self, noise: float, shift: complex, n: int) -> tuple[Complex, Complex]:
-        basis = self._basis(noise)
+        basis = self.family.basis(noise)
         matrix = basis.matrix(self.sector, *self.truncation)
         return ShiftedInverse(matrix, shift, None, basis.ordering).eigenpairs(n)
 
