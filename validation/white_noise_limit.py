@@ -2,9 +2,10 @@
 
 Claims, at fixed A = RK (docs/limits.md has the derivation): densities of (ξ, α), of ξ
 and of α, E ξ, E‖ξ‖² and E τ at order 1; with one Wiener process ξ and α + Rκ at order 1
-and α at order 1/2, off by √(A²R/π) in the mean. The orders are reached in the limit:
-what is missing at R, the larger of two neighbours, is below a multiple of R that is the
-same for all measures.
+and α at order 1/2, off by √(A²R/π) in the mean. For |ξ|²/2 at rest the gap and the
+stationary variance are of order 1, and of order 2 after their derivatives at R = 0. The
+orders are reached in the limit: what is missing at R, the larger of two neighbours, is
+below a multiple of R that is the same for all measures.
 """
 
 from __future__ import annotations
@@ -24,6 +25,8 @@ from fpsolve.plotting import plot_white_noise  # noqa: E402
 
 NOISE = 1.5
 QUADRATIC, QUARTIC = fp.QuadraticPotential(), fp.PowerPotential(4.0)
+# Noise of the gap and the variance: near 1.5 the second derivative of the gap vanishes.
+EXPANDED = 2.0
 # Missing from the order per R, as measured for the directions, which relax over 2/A².
 BAND = 12.0
 
@@ -83,7 +86,7 @@ def main() -> None:
     for symbol, potential, speed in cases[: 1 if arguments.quick else None]:
         dataset = fp.studies.white_noise_limit(
             potential, NOISE, lengths, belt_speed=speed, quick=arguments.quick,
-            workers=arguments.workers,
+            parts=["density", "paths"], workers=arguments.workers,
         )  # fmt: skip
         n_failed = float((dataset["status"] != "finished").sum())
         report.check(f"B = {symbol}: cases that failed", n_failed, "<", 1)
@@ -92,6 +95,11 @@ def main() -> None:
         setting = "quick" if arguments.quick else "full"
         if potential is QUADRATIC and not speed:
             save_figure(plot_white_noise(dataset), f"white_noise_limit_{setting}.png")
+    dataset = fp.studies.white_noise_limit(
+        QUADRATIC, EXPANDED, lengths, parts=["gap", "variance"],
+        workers=arguments.workers,
+    )  # fmt: skip
+    check_orders(report, dataset, f"|ξ|²/2, A = {EXPANDED:g}")
     report.finish()
 
 

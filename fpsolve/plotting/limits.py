@@ -53,8 +53,20 @@ _WHITE = {
     "paths/angle": (r"$\alpha$, same noise", "vermilion", "v"),
     "paths/position": (r"$\xi$, same noise", "blue", "P"),
     "paths/corrected": (r"$\alpha + R\kappa$, same noise", "orange", "*"),
+    "gap/gap": ("gap", "blue", "o"),
+    "gap/next_term": ("gap, with its derivative", "sky", "^"),
+    "variance/variance": (r"$\mathrm{Var}\,\xi_1$", "vermilion", "s"),
+    "variance/next_term": (
+        r"$\mathrm{Var}\,\xi_1$, with its derivative",
+        "orange",
+        "D",
+    ),
 }
-_WHITE_PANELS = {"density": "densities and moments", "paths": "paths"}
+_WHITE_PANELS = {
+    "densities and moments": ("density",),
+    "paths": ("paths",),
+    "stationary, and rates": ("gap", "variance"),
+}
 
 
 def plot_large_noise(dataset: xr.Dataset) -> Figure:
@@ -113,25 +125,25 @@ def plot_white_noise(dataset: xr.Dataset) -> Figure:
         )
     known = set(dataset["quantity"].to_numpy())
     panels = {
-        part: {name: _WHITE[name] for name in _WHITE if name in known & _of(part)}
-        for part in _WHITE_PANELS
+        title: {name: _WHITE[name] for name in _WHITE if name in known & _of(parts)}
+        for title, parts in _WHITE_PANELS.items()
     }
-    panels = {part: lines for part, lines in panels.items() if lines}
+    panels = {title: lines for title, lines in panels.items() if lines}
     title = f"$B$ = {dataset.attrs['formula']}"
     with drawing(PAGE, 3.4, title) as figure:
         grid = figure.subplots(1, len(panels), squeeze=False)
-        for axes, (part, lines) in zip(grid.flat, panels.items(), strict=True):
+        for axes, (panel, lines) in zip(grid.flat, panels.items(), strict=True):
             _draw(axes, dataset, lines, over)
-            axes.set_title(_WHITE_PANELS[part])
+            axes.set_title(panel)
             axes.set_xlabel("$R$")
         grid[0, 0].set_ylabel("distance")
         _legend(figure, grid)
     return figure
 
 
-def _of(part: str) -> set[str]:
-    """The quantities of a part that are drawn."""
-    return {name for name in _WHITE if name.startswith(f"{part}/")}
+def _of(parts: tuple[str, ...]) -> set[str]:
+    """The quantities of parts that are drawn."""
+    return {name for name in _WHITE if name.partition("/")[0] in parts}
 
 
 def _panels(dataset: xr.Dataset) -> dict[str, dict[str, tuple[str, str, str]]]:

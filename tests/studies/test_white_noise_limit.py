@@ -22,7 +22,9 @@ def of(dataset, quantity):
 
 @pytest.fixture(scope="module")
 def dataset():
-    return studies.white_noise_limit(UNIT, 1.5, LENGTHS, quick=True, workers=0)
+    return studies.white_noise_limit(
+        UNIT, 1.5, LENGTHS, quick=True, parts=["density", "paths"], workers=0
+    )
 
 
 @pytest.mark.parametrize(
@@ -81,6 +83,29 @@ def test_coupled_smooth_paths_have_the_law_of_sampled_ones():
         assert abs(few[name] - many[name]) < 4 * error + 0.01 * many[name], name
 
 
+def test_gap_and_variance_are_of_order_one_and_two_after_their_derivatives():
+    # σ = 1.2: nothing is hidden by σ = 1.
+    potential = fp.QuadraticPotential(1.2, 1.2)
+    found = studies.white_noise_limit(
+        potential, 1.5, LENGTHS[:3], parts=["gap", "variance"], workers=0
+    )
+    assert (found.status == "finished").all(), found.message.to_numpy()
+    limit = fp.LayDownModel(potential, 1.5)
+    known = {"gap": studies.gap_slope(limit), "variance": studies.variance_slope(limit)}
+    for part, slope in known.items():
+        for measure, order in ((part, 1), ("next_term", 2)):
+            one = of(found, f"{part}/{measure}")
+            assert one.expected_order == order
+            assert (one.distance > 100 * one.distance_error).all()
+            # What follows is a share of 3R and less: that much of an order.
+            missing = np.abs(one.observed_order.to_numpy()[1:] - order)
+            assert (missing < 3 * np.array(LENGTHS[1:3])).all()
+        # (4d(R) − d(2R))/2R is the derivative up to O(R²).
+        near, far = of(found, f"{part}/{part}").distance.to_numpy()[:2]
+        derivative = (4 * near - far) / (2 * LENGTHS[0])
+        assert derivative == pytest.approx(abs(slope), rel=5e-3)
+
+
 def test_on_a_belt_and_for_another_potential_the_orders_are_the_same():
     found = studies.white_noise_limit(
         fp.PowerPotential(4.0), 1.5, (0.0125, 0.025), belt_speed=0.2, quick=True,
@@ -92,11 +117,16 @@ def test_on_a_belt_and_for_another_potential_the_orders_are_the_same():
         assert order == pytest.approx(1.0, abs=0.2)
 
 
-def test_a_figure_shows_both_panels(dataset):
+def test_a_figure_shows_all_panels(dataset):
     figure = plot_white_noise(dataset)
     assert [axes.get_title() for axes in figure.axes] == [
         "densities and moments", "paths",
     ]  # fmt: skip
+    variance = studies.white_noise_limit(
+        UNIT, 1.5, LENGTHS[1:3], parts=["variance"], workers=0
+    )
+    (axes,) = plot_white_noise(variance).axes
+    assert axes.get_title() == "stationary, and rates"
     with pytest.raises(ValueError, match="`dataset` must come from `white_noise_limit"):
         plot_white_noise(dataset.drop_vars("expected_order"))
 
@@ -113,7 +143,17 @@ def test_a_figure_shows_both_panels(dataset):
         ({"s_end": 0.0}, ValueError, "`s_end` must be positive"),
         ({"n_paths": 1}, ValueError, "`n_paths` must be"),
         ({"p0": "gauss"}, TypeError, "`p0` must be a GaussianLaw"),
-        ({"parts": ["gaps"]}, ValueError, "`parts` must be among density, paths"),
+        ({"parts": ["gaps"]}, ValueError, "`parts` must be among density, paths, gap"),
+        (
+            {"parts": ["gap"], "belt_speed": 0.2},
+            ValueError,
+            "among density, paths for this study",
+        ),
+        (
+            {"parts": ["variance"], "potential": fp.QuadraticPotential(1.0, 0.7)},
+            ValueError,
+            "among density, paths for this study",
+        ),
     ],
 )
 def test_arguments_that_do_not_fit_are_refused(changes, error, message):

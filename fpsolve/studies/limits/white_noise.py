@@ -29,8 +29,8 @@ from fpsolve.studies.constants.poincare import require_confining
 from fpsolve.studies.limits.large_noise import start_for
 from fpsolve.studies.limits.large_noise_cases import resolution_for
 from fpsolve.studies.limits.white_noise_cases import (
-    PARTS,
     WhiteNoiseResolution,
+    possible_parts,
     white_noise_case,
 )
 from fpsolve.studies.limits.white_noise_dataset import white_noise_dataset
@@ -94,7 +94,10 @@ def white_noise_limit(
       model by `drift_kick`, from one start, with κ from its Gaussian; all of order 1;
     - "paths": smooth and basic paths with the same Wiener process and κ = 0 at the
       start. β = α + Rκ obeys the basic equation but for the place of its force, so that
-      ξ and β are of order 1, and α, which is off by Rκ, of order 1/2.
+      ξ and β are of order 1, and α, which is off by Rκ, of order 1/2;
+    - "gap", "variance": the spectral gap and the stationary Var ξ₁ against gap_0 and
+      σ², of order 1, and what is left after R times their derivatives `gap_slope` and
+      `variance_slope` (`next_term`), of order 2. For B = ‖ξ‖²/(2σ²) on a belt at rest.
 
     docs/limits.md derives the orders, for smooth B. A part that fails at one R leaves
     NaN and a message there, nothing else.
@@ -117,7 +120,7 @@ def white_noise_limit(
         By default 20 000, quick 4 000.
     seed : int
     parts : iterable of str, optional
-        By default all.
+        By default all that the model allows.
     quick : bool
         Coarser, for a look.
     client, workers, directory, progress
@@ -153,12 +156,13 @@ def white_noise_limit(
     check_kind("p0", law, GaussianLaw, "both sides start from its formula")
     many = settings.n_paths if n_paths is None else n_paths
     n_paths = check_integer("n_paths", many, at_least=2)
-    chosen = chosen_parts(parts, list(PARTS), "study")
+    chosen = chosen_parts(parts, possible_parts(potential, speed), "study")
     resolution = resolution_of(potential, amplitude**2 * speed, law, settings)
     options: dict[str, dict[str, Any]] = {
         "density": {"law": law, "s_end": end, "resolution": resolution},
         "paths": {"law": law, "s_end": end, "n_paths": n_paths,
                   "seed": check_integer("seed", seed, at_least=0)},
+        "gap": {}, "variance": {},
     }  # fmt: skip
     shared = {"potential": potential, "noise": amplitude, "belt_speed": speed}
     cases = [

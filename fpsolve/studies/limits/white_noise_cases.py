@@ -16,13 +16,15 @@ from fpsolve.grids import diagnostics, initial
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.model.curves.belts import FixedBelt, MovingBelt
 from fpsolve.model.potentials.potential import Potential
+from fpsolve.model.potentials.quadratic import QuadraticPotential
 from fpsolve.model.smooth import SmoothLayDownModel
 from fpsolve.paths.laws import GaussianLaw
 from fpsolve.studies.limits.coupled_paths import coupled_distances
 from fpsolve.studies.limits.distances import second_moment
 from fpsolve.studies.limits.smooth_runs import smooth_marginal
+from fpsolve.studies.limits.white_noise_rates import gap_case, variance_case
 
-__all__ = ["PARTS", "WhiteNoiseResolution", "white_noise_case"]
+__all__ = ["PARTS", "WhiteNoiseResolution", "possible_parts", "white_noise_case"]
 
 # The comparison has fewer cells by a sixth and steps longer by a half.
 _FEWER, _LONGER = 5 / 6, 1.5
@@ -135,4 +137,16 @@ def paths_case(
 PARTS: dict[str, Callable[..., Mapping[str, float]]] = {
     "density": density_case,
     "paths": paths_case,
+    "gap": gap_case,
+    "variance": variance_case,
 }
+
+
+def possible_parts(potential: Potential, belt_speed: float) -> list[str]:
+    """The parts of a study that potential and belt allow.
+
+    Gap and variance are expanded for isotropic quadratic B on a belt at rest.
+    """
+    isotropic = isinstance(potential, QuadraticPotential) and potential.isotropic
+    expanded = isotropic and not belt_speed
+    return [part for part in PARTS if expanded or part not in ("gap", "variance")]

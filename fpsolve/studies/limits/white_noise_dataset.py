@@ -38,6 +38,14 @@ _MEASURES: dict[str, dict[str, tuple[float, str]]] = {
         "position": (1.0, "E‖ξ − ξ_0‖, same noise"),
         "corrected": (1.0, "E|α + Rκ − α_0|, same noise"),
     },
+    "gap": {
+        "gap": (1.0, "|gap − gap_0|"),
+        "next_term": (2.0, "|gap − gap_0 − R gap_0′|"),
+    },
+    "variance": {
+        "variance": (1.0, "|Var ξ₁ − σ²|"),
+        "next_term": (2.0, "|Var ξ₁ − σ² − R (Var ξ₁)_0′|"),
+    },
 }
 
 
