@@ -172,6 +172,6 @@ def test_a_spectrum_from_a_file_with_a_mistake_names_section_and_key(fpsolve, tm
     path.write_text(AT_REST.replace("relaxation_length", "length"), encoding="utf-8")
     answer = fpsolve("spectrum", path, "--out", tmp_path / "out")
     assert_mistake(answer, "relaxation_length")
-    path.write_text(CONFIG, encoding="utf-8")
+    path.write_text(AT_REST.replace("quadratic", "linear"), encoding="utf-8")
     answer = fpsolve("spectrum", path, "--out", tmp_path / "out")
-    assert_mistake(answer, "the belt at rest")
+    assert_mistake(answer, "`potential` must be a QuadraticPotential")

@@ -141,6 +141,8 @@ def test_paths_have_the_means_of_the_density_at_every_phase(swinging):
             assert errors[name][j] < 2 * spread
 
 
+# Ten seconds; its sample paths and identities hold the same density on every push.
+@pytest.mark.nightly
 def test_for_large_noise_the_mean_follows_the_nozzle_as_in_the_hydrodynamic_limit():
     def distance(noise):
         radius, turn, drift = 1.0, 0.5, 0.2

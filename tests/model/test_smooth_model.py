@@ -136,7 +136,7 @@ def test_a_potential_must_be_one():
     "function",
     [
         lambda model: fp.drift_kick(model, GRID),
-        lambda model: fp.spectrum(model),
+        lambda model: fp.web_spectrum(model, 0.5, 0.0),
     ],
 )
 def test_what_is_for_the_basic_model_only_says_so_and_names_the_limit(function):

@@ -294,11 +294,11 @@ def test_what_a_file_holds_decides_what_is_loaded(content, tmp_path):
 
 
 def test_a_kind_from_the_future_is_refused(paths, tmp_path):
-    dataset = paths.to_xarray().assign_attrs(fpsolve_kind="web")
-    dataset.to_netcdf(tmp_path / "web.nc", engine="h5netcdf")
-    message = r"it holds 'web', this version of fpsolve reads 'solution', 'paths', "
+    dataset = paths.to_xarray().assign_attrs(fpsolve_kind="string")
+    dataset.to_netcdf(tmp_path / "string.nc", engine="h5netcdf")
+    message = r"it holds 'string', this version of fpsolve reads 'solution', 'paths', "
     with pytest.raises(FileFormatError, match=message):
-        fp.load(tmp_path / "web.nc")
+        fp.load(tmp_path / "string.nc")
 
 
 def test_missing_parts_are_named(paths, tmp_path):
