@@ -34,8 +34,8 @@ class MeanPattern:
 
     Attributes
     ----------
-    length, width : float
-        Of one cell of the pattern, along and across the belt.
+    width, length : float
+        Of one cell of the pattern, across and along the belt.
     spacing : float
         d.
     mean : float
