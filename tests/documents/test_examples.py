@@ -25,17 +25,25 @@ TEST_COMMAND = (
 
 # Pages that compute little; the others are left to the step that builds the pages.
 QUICK = ("README.md", "docs/checkpoints.md", "docs/benchmarks.md")
+# Pages that compute for ten seconds and more, once a night.
+LONG = (
+    "docs/choosing.md", "docs/homogeneity.md", "docs/limits.md", "docs/nozzles.md",
+    "docs/webs.md",
+)  # fmt: skip
+
+
+def marks_of(name):
+    """The markers of a page."""
+    long = [pytest.mark.nightly] if name in LONG else []
+    return [] if name in QUICK else [pytest.mark.documents, *long]
 
 
 def marked(pages):
-    """Pages as parameters, with the marker of those that take long."""
+    """Pages as parameters, with the markers of those that take long."""
     return [
-        pytest.param(
-            page, id=name_of(page),
-            marks=[] if name_of(page) in QUICK else pytest.mark.documents,
-        )
+        pytest.param(page, id=name_of(page), marks=marks_of(name_of(page)))
         for page in pages
-    ]  # fmt: skip
+    ]
 
 
 def start_of(page):

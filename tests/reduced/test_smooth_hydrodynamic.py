@@ -202,9 +202,7 @@ def test_where_a_curvature_spreads_the_fibre_without_end_the_limit_is_refused():
         lambda r: 1.5 * np.log1p(r * r), lambda r: 3 * r / (1 + r * r)
     )
     assert fp.HydrodynamicLimit(fp.SmoothLayDownModel(heavy, 0.1, 2.0))
-    with pytest.raises(
-        ValueError, match=r"`relaxation_length` must be small enough "
-    ):
+    with pytest.raises(ValueError, match=r"`relaxation_length` must be small enough "):
         fp.HydrodynamicLimit(fp.SmoothLayDownModel(heavy, 8.0, 2.0))
     with pytest.raises(ValueError, match=r"below K/A² = 0\.5, got 0\.6 with A = 2"):
         fp.HydrodynamicLimit(

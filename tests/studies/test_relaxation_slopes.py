@@ -98,9 +98,7 @@ def test_models_without_these_derivatives_are_refused():
             ValueError, match="`noise` must be positive, got 0; without"
         ):
             function(fp.LayDownModel(UNIT, 0.0))
-        with pytest.raises(
-            TypeError, match="`model` must be a LayDownModel or a "
-        ):
+        with pytest.raises(TypeError, match="`model` must be a LayDownModel or a "):
             function(1.0)
         with pytest.raises(ValueError, match="`tolerance` must be"):
             function(model(1.0), tolerance=math.nan)
