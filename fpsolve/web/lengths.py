@@ -5,9 +5,10 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from fpsolve.model.curves.curve import Curve
 from fpsolve.model.fibre import FibreModel
+from fpsolve.model.persistence import Persistence
 from fpsolve.model.potentials.nodes import gibbs_nodes
-from fpsolve.model.smooth import SmoothLayDownModel
 
 __all__ = ["Lengths", "lengths_of"]
 
@@ -38,18 +39,21 @@ def lengths_of(model: FibreModel) -> Lengths:
     nodes = gibbs_nodes(model.potential)
     deviations = nodes.deviations()
     finest = min(1.0 / math.sqrt(max(nodes.mean_square_forces())), *deviations)
-    swing = abs(getattr(model.curve, "angular_speed", 0.0))
-    if model.curve.autonomous:
-        swing = 0.0
-    smooth = isinstance(model, SmoothLayDownModel)
-    length: float = getattr(model, "relaxation_length", 0.0) if smooth else 0.0
+    period = period_of(model.curve)
+    length = Persistence.of(model).relaxation_length
     # A smooth fibre also forgets its curvature, over R.
     relaxation = relaxation_length(model.noise, max(deviations)) + length
     return Lengths(
         relaxation=rounded(relaxation),
-        step=rounded(longest_step(model.noise, finest, swing, length)),
-        period=2 * math.pi / swing if swing else 0.0,
+        step=rounded(longest_step(model.noise, finest, period, length)),
+        period=period,
     )
+
+
+def period_of(curve: Curve) -> float:
+    """The period that a curve names, a user's own one too; 0 for none."""
+    period = 0.0 if curve.autonomous else float(getattr(curve, "period", 0.0))
+    return period if 0 < period < math.inf else 0.0
 
 
 def relaxation_length(noise: float, deviation: float) -> float:
@@ -62,7 +66,7 @@ def relaxation_length(noise: float, deviation: float) -> float:
     return 2.0 / noise**2 + (noise * deviation) ** 2
 
 
-def longest_step(noise: float, finest: float, swing: float, smooth: float) -> float:
+def longest_step(noise: float, finest: float, period: float, smooth: float) -> float:
     """The longest step that resolves force, noise and nozzle.
 
     Parameters
@@ -71,8 +75,8 @@ def longest_step(noise: float, finest: float, swing: float, smooth: float) -> fl
         A.
     finest : float
         Shortest length over which the force changes.
-    swing : float
-        |ω|.
+    period : float
+        Of the nozzle; 0 for none.
     smooth : float
         Relaxation length R of a smooth model; 0 for the basic one.
     """
@@ -82,8 +86,8 @@ def longest_step(noise: float, finest: float, swing: float, smooth: float) -> fl
         steps.append(math.sqrt(2 * smooth) / (3 * noise))
     else:
         steps.append(0.5 / noise**2)
-    if swing > 0:
-        steps.append(0.2 / swing)
+    if period > 0:
+        steps.append(0.1 / math.pi * period)
     return min(steps)
 
 

@@ -9,8 +9,8 @@ from scipy.special import hyp1f1
 
 import fpsolve as fp
 from fpsolve import initial
+from fpsolve.model.persistence import Persistence
 from fpsolve.reduced.hydrodynamic import InitialLayer
-from fpsolve.reduced.hydrodynamic.persistence import Persistence
 
 QUADRATIC = fp.QuadraticPotential(1.2, 0.7)
 MODEL = fp.SmoothLayDownModel(QUADRATIC, 0.5, 2.0, fp.MovingBelt(0.1))

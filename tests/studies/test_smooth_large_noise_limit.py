@@ -7,7 +7,7 @@ import pytest
 
 import fpsolve as fp
 from fpsolve import studies
-from fpsolve.reduced.hydrodynamic.persistence import Persistence
+from fpsolve.model.persistence import Persistence
 
 UNIT = fp.QuadraticPotential()
 NOISES = (2.0, 2.0 * math.sqrt(2.0))

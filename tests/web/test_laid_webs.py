@@ -318,3 +318,29 @@ def test_the_relaxation_length_is_that_of_the_spectral_gap(noise):
     # An interpolation of both limits, too long between them: 1.24 times at A = 2. The
     # gap is known to a per cent.
     assert 0.97 < lengths_of(model).relaxation * gap < 1.26
+
+
+def test_pilots_follow_the_period_that_a_curve_of_the_users_own_names():
+    from fpsolve.web.lengths import lengths_of
+
+    nozzle = fp.OscillatingNozzle(0.1, 1.0, 0.05)
+
+    class Swinging(fp.Curve):
+        kind, speed, period, autonomous, fixed = "own", 0.1, nozzle.period, False, False
+        formula = latex = "own"
+
+        def displacement(self, s0, s1):
+            return nozzle.displacement(s0, s1)
+
+        def position(self, s):
+            return nozzle.position(s)
+
+        def velocity(self, s):
+            return nozzle.velocity(s)
+
+    own, known = (
+        lengths_of(fp.LayDownModel(QUADRATIC, 1.0, curve))
+        for curve in (Swinging(), nozzle)
+    )
+    assert own == known
+    assert own.period == pytest.approx(2 * np.pi / 0.05)

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 from fpsolve._support.arrays import Array
 from fpsolve.grids.plane import PlaneGrid
 from fpsolve.model.fibre import FibreModel, check_fibre_model
+from fpsolve.model.persistence import Persistence
 from fpsolve.model.potentials.at_points import value_at
 from fpsolve.model.potentials.evidence import check_wells_met
 from fpsolve.model.potentials.linear import LinearPotential
@@ -20,7 +21,6 @@ from fpsolve.model.potentials.potential import Potential
 from fpsolve.model.potentials.power import PowerPotential
 from fpsolve.model.potentials.quadratic import QuadraticPotential
 from fpsolve.model.potentials.wells import check_places
-from fpsolve.reduced.hydrodynamic.persistence import Persistence
 
 __all__ = ["EffectivePotential", "check_limit"]
 

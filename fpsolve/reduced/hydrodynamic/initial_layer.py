@@ -10,7 +10,7 @@ from fpsolve._support.arrays import Array, check_finite_numbers
 from fpsolve._support.checks import check_non_negative, check_positive
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.grids.plane import PlaneGrid
-from fpsolve.reduced.hydrodynamic.persistence import Persistence
+from fpsolve.model.persistence import Persistence
 
 __all__ = ["InitialLayer"]
 

@@ -18,12 +18,12 @@ from fpsolve.evolution.schedule import checked_stops, make_schedule
 from fpsolve.grids import diagnostics
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.grids.plane import PlaneGrid, plane_of
+from fpsolve.model.persistence import Persistence
 from fpsolve.model.potentials.quadratic import QuadraticPotential
 from fpsolve.reduced.hydrodynamic import reconstruction, run, sampling
 from fpsolve.reduced.hydrodynamic.equation import LimitEquation
 from fpsolve.reduced.hydrodynamic.initial_layer import InitialLayer
 from fpsolve.reduced.hydrodynamic.ornstein_uhlenbeck import OrnsteinUhlenbeckLimit
-from fpsolve.reduced.hydrodynamic.persistence import Persistence
 from fpsolve.reduced.hydrodynamic.scharfetter_gummel import gibbs_masses
 from fpsolve.reduced.hydrodynamic.solution import (
     HydrodynamicSolution,

@@ -10,9 +10,9 @@ from fpsolve._support.arrays import Array, check_finite_numbers
 from fpsolve._support.checks import check_non_negative, check_positive, shown
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.grids.plane import PlaneGrid
+from fpsolve.model.persistence import Persistence
 from fpsolve.model.potentials.at_points import value_at
 from fpsolve.model.potentials.potential import Potential
-from fpsolve.reduced.hydrodynamic.persistence import Persistence
 
 __all__ = ["balanced_gradient", "reconstruct"]
 

@@ -19,10 +19,10 @@ from fpsolve.evolution.schedule import Schedule, make_schedule
 from fpsolve.evolution.schedule import checked_stops as checked_series
 from fpsolve.grids.plane import PlaneGrid
 from fpsolve.model.fibre import FibreModel
+from fpsolve.model.persistence import Persistence
 from fpsolve.model.potentials.quadratic import QuadraticPotential
 from fpsolve.reduced.hydrodynamic.layout import PATHS
 from fpsolve.reduced.hydrodynamic.ornstein_uhlenbeck import OrnsteinUhlenbeckLimit
-from fpsolve.reduced.hydrodynamic.persistence import Persistence
 
 __all__ = ["METHODS", "HydrodynamicPaths", "sample"]
 

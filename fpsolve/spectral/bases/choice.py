@@ -8,6 +8,7 @@ import numpy as np
 
 from fpsolve.model.fibre import FibreModel
 from fpsolve.model.laydown import check_model
+from fpsolve.model.persistence import Persistence
 from fpsolve.model.potentials.potential import Potential
 from fpsolve.model.potentials.quadratic import QuadraticPotential
 from fpsolve.model.smooth import SmoothLayDownModel
@@ -15,7 +16,7 @@ from fpsolve.spectral.bases.hermite import HermiteDiscretisation
 from fpsolve.spectral.bases.sectors import Discretisation
 from fpsolve.spectral.bases.smooth import SmoothDiscretisation
 from fpsolve.spectral.bases.tensor import TensorDiscretisation
-from fpsolve.spectral.bases.weights import half_loudness, quadratic
+from fpsolve.spectral.bases.weights import quadratic
 
 __all__ = ["check_resolved", "discretisation_for", "orbit_radius"]
 
@@ -71,7 +72,7 @@ def smooth_discretisation_for(model: SmoothLayDownModel) -> SmoothDiscretisation
 
     check(model)
     potential = quadratic(model)
-    a = half_loudness(model)
+    a = Persistence.of(model).bending
     if not a <= LARGEST_LOUDNESS:
         highest = math.sqrt(2 * LARGEST_LOUDNESS / model.relaxation_length)
         raise ValueError(

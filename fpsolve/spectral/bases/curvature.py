@@ -8,8 +8,9 @@ from typing import NamedTuple
 import numpy as np
 from scipy.sparse import csc_array, diags_array
 
+from fpsolve.model.persistence import Persistence
 from fpsolve.model.smooth import SmoothLayDownModel
-from fpsolve.spectral.bases.weights import Weight, half_loudness
+from fpsolve.spectral.bases.weights import Weight
 
 __all__ = ["CurvatureOperators", "curvature_degree", "curvature_operators"]
 
@@ -61,5 +62,5 @@ def curvature_degree(model: SmoothLayDownModel, degree: int) -> int:
 
     Measured: with less the error of the moments is that of κ.
     """
-    a = half_loudness(model)
+    a = Persistence.of(model).bending
     return math.ceil(0.8 * degree + a + 2 * math.sqrt(a) + 2)

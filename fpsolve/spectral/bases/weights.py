@@ -5,15 +5,13 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from scipy.special import hyp1f1
-
+from fpsolve.model.persistence import Persistence
 from fpsolve.model.potentials.quadratic import QuadraticPotential
 from fpsolve.model.smooth import SmoothLayDownModel
 
 __all__ = [
     "Weight",
     "curvature_weight",
-    "half_loudness",
     "position_weight",
     "quadratic",
 ]
@@ -51,11 +49,10 @@ def position_weight(model: SmoothLayDownModel) -> Weight:
     """
     sigma = quadratic(model).sigma1
     length, noise = model.relaxation_length / sigma, model.noise * math.sqrt(sigma)
-    a = half_loudness(model)
     softness = length / (length + 0.1 * (1.0 + 0.5 * noise**2))
     exponent = 1.0 - 0.35 * softness
     narrow = min(1.0, 0.78 * noise**0.6)
-    wide = (exponent - 0.25) * (float(hyp1f1(1.0, a + 1.0, a)) + length)
+    wide = (exponent - 0.25) * (Persistence.of(model).factor + length)
     return Weight(sigma**2 * max(narrow, wide), exponent)
 
 
@@ -69,11 +66,6 @@ def curvature_weight(model: SmoothLayDownModel) -> Weight:
     free = sigma**2 * model.curvature_variance
     variance = max(0.65 * free, min(free, 1.7), 0.2)
     return Weight(variance / sigma**2, 1.0 - 0.4 / (1.0 + free / 8.0))
-
-
-def half_loudness(model: SmoothLayDownModel) -> float:
-    """a = A²R/2 = K²R³/2, which is kept in the limit of large noise."""
-    return 0.5 * model.noise**2 * model.relaxation_length
 
 
 def quadratic(model: SmoothLayDownModel) -> QuadraticPotential:

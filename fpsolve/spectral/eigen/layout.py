@@ -79,27 +79,19 @@ class _Modes(Part):
         )
         sizes = np.array([mode.truncation for mode in modes], np.int64).reshape(-1, 3)
         lengths = np.array([mode.vector.size for mode in modes], np.int64)
-        degrees = (
-            {}
-            if not sizes[:, 2].any()
-            else {
-                "mode_curvature": (
-                    _INDEX,
-                    sizes[:, 2],
-                    labels("degree in κ of its basis"),
-                )
-            }
-        )
         of, coefficient = "coefficients of the eigenfunction", ("coefficient",)
-        return {
+        stored: Stored = {
             "mode_degree": (_INDEX, sizes[:, 0], labels("degree of its basis")),
             "mode_harmonics": (_INDEX, sizes[:, 1],
                                labels("largest harmonic of its basis")),
-            **degrees,
             "mode_size": (_INDEX, lengths, labels(of)),
             "mode_real": (coefficient, vectors.real, labels("Re of coefficients")),
             "mode_imag": (coefficient, vectors.imag, labels("Im of coefficients")),
         }  # fmt: skip
+        if sizes[:, 2].any():
+            words = labels("degree in κ of its basis")
+            stored["mode_curvature"] = _INDEX, sizes[:, 2], words
+        return stored
 
     def read(self, source: Source) -> dict[str, Any]:
         model, sectors = source.fields["model"], source.fields["sectors"]

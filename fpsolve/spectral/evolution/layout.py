@@ -22,7 +22,7 @@ from fpsolve.evolution.layout import (
 from fpsolve.evolution.parts import Model
 from fpsolve.evolution.series import long_name
 from fpsolve.grids.row_sums import MOMENTS
-from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.reading import model_from_dict
 from fpsolve.spectral.evolution.expansion import Expansion
 
 if TYPE_CHECKING:
@@ -37,11 +37,11 @@ SERIES = ("mass", "relative_entropy", *MOMENTS)
 _LARGEST = 2000
 
 
-class _QuadraticModel(Model):
+class KnownModel(Model):
     """A model with a potential of this package, or the dataset is refused."""
 
     def read(self, source: Source) -> dict[str, Any]:
-        return {"model": LayDownModel.from_dict(source.about["model"])}
+        return {"model": model_from_dict(source.about["model"])}
 
 
 class _Expansions(Part):
@@ -129,7 +129,7 @@ def words_of_error(name: str) -> str:
 
 SOLUTION = Layout(
     "Expansion of the fibre lay-down density in time",
-    _QuadraticModel(),
+    KnownModel(),
     Variable("s", ("s",), "arclength s", increasing=True),
     Columns("series", SERIES, ("s",), long_name),
     Columns("errors", SERIES, ("s",), words_of_error, "{}_error"),
@@ -138,7 +138,7 @@ SOLUTION = Layout(
 )
 STEADY = Layout(
     "Stationary fibre lay-down density by expansion",
-    _QuadraticModel(),
+    KnownModel(),
     Variable("residual", (), "‖L* h‖/‖h‖ in L²(μ)", kind=float),
     Columns("moments", MOMENTS, (), long_name, kind=float),
     Columns("errors", MOMENTS, (), words_of_error, "{}_error", float),

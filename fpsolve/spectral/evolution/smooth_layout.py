@@ -17,12 +17,11 @@ from fpsolve.evolution.layout import (
     check_counts,
     check_dimensions,
 )
-from fpsolve.evolution.parts import Model
 from fpsolve.evolution.series import long_name
 from fpsolve.grids.smooth_sums import SMOOTH_MOMENTS
 from fpsolve.spectral.bases.choice import smooth_discretisation_for
 from fpsolve.spectral.bases.sectors import Truncation
-from fpsolve.spectral.evolution.layout import words_of_error
+from fpsolve.spectral.evolution.layout import KnownModel, words_of_error
 
 __all__ = ["SMOOTH_STEADY"]
 
@@ -50,10 +49,8 @@ class _Vectors(Part):
         return stored
 
     def read(self, source: Source) -> dict[str, Any]:
-        dataset, basis = (
-            source.dataset,
-            smooth_discretisation_for(source.fields["model"]),
-        )
+        dataset = source.dataset
+        basis = smooth_discretisation_for(source.fields["model"])
         for name in _SIZES:
             check_dimensions(dataset, name, (_OVER,))
         check_counts(_OVER, 2, dataset.sizes[_OVER], "the expansions")
@@ -72,7 +69,7 @@ class _Vectors(Part):
 
 SMOOTH_STEADY = Layout(
     "Stationary density of a smooth fibre by expansion",
-    Model(),
+    KnownModel(),
     Variable("residual", (), "‖L* p‖/‖p‖ of coefficients", kind=float),
     Columns("moments", SMOOTH_MOMENTS, (), long_name, kind=float),
     Columns("errors", SMOOTH_MOMENTS, (), words_of_error, "{}_error", float),

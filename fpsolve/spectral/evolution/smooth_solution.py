@@ -11,21 +11,14 @@ from fpsolve._support.arrays import Array
 from fpsolve._support.labels import to_json
 from fpsolve.evolution.call import Call
 from fpsolve.evolution.evolution import WithSeries
-from fpsolve.evolution.layout import Attribute, Columns, Layout, Source, Variable
-from fpsolve.evolution.parts import Model
+from fpsolve.evolution.layout import Attribute, Columns, Layout, Variable
 from fpsolve.evolution.saved import Saved
 from fpsolve.evolution.series import long_name
 from fpsolve.model.smooth import SmoothLayDownModel
+from fpsolve.spectral.evolution.layout import KnownModel
 from fpsolve.spectral.evolution.smooth_observables import SERIES
 
 __all__ = ["SmoothSpectralSolution"]
-
-
-class _SmoothModel(Model):
-    """A model with a potential of this package, or the dataset is refused."""
-
-    def read(self, source: Source) -> dict[str, Any]:
-        return {"model": SmoothLayDownModel.from_dict(source.about["model"])}
 
 
 def words_of_error(name: str) -> str:
@@ -35,7 +28,7 @@ def words_of_error(name: str) -> str:
 
 LAYOUT = Layout(
     "Moments of the density of a smooth fibre by expansion in time",
-    _SmoothModel(),
+    KnownModel(),
     Variable("s", ("s",), "arclength s", increasing=True),
     Columns("series", SERIES, ("s",), long_name),
     Columns("errors", SERIES, ("s",), words_of_error, "{}_error"),

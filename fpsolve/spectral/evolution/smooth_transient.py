@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 import scipy.sparse as sparse
-from scipy.special import hyp1f1
 
 from fpsolve._support.arrays import Array
 from fpsolve._support.memory import allowed_memory
 from fpsolve.errors import MemoryLimitError
+from fpsolve.model.persistence import Persistence
 from fpsolve.model.smooth import SmoothLayDownModel
 from fpsolve.spectral.agreement import excess, failure
 from fpsolve.spectral.evolution.circular_functions import (
@@ -92,8 +92,8 @@ def scales_of(model: SmoothLayDownModel, law: Any) -> Scales:
     The law of ξ has tails that are longer than those of e^{−B} the longer R is, which
     a density that carries all of the weight does not follow.
     """
-    length, spread, turns = numbers(model)
-    diffusive = 0.4 * (float(hyp1f1(1.0, turns + 1.0, turns)) + length)
+    length, spread, _ = numbers(model)
+    diffusive = 0.4 * (Persistence.of(model).factor + length)
     widest = float(np.linalg.eigvalsh(scaled(law, model)[1])[-1])
     return Scales(
         plane=max(1.0 + 0.4 * min(length, 1.0), diffusive, widest / 1.5),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from typing import Any
 
 from fpsolve._support.arrays import Array
@@ -12,7 +13,7 @@ from fpsolve.spectral.evolution.quadratic import checked_tolerance
 __all__ = ["StationaryDensity"]
 
 
-class StationaryDensity(Saved):
+class StationaryDensity(Saved, ABC):
     """A result whose density is known in two truncations."""
 
     def density(self, grid: Any, *, tolerance: float = 1e-2) -> Array:
@@ -42,5 +43,6 @@ class StationaryDensity(Saved):
         """∫ |p − p′| on a grid, p′ from the next coarser truncation."""
         return self._density_and_error(grid)[1]
 
+    @abstractmethod
     def _density_and_error(self, grid: Any) -> tuple[Array, float]:
-        raise NotImplementedError
+        """p on a grid, and its distance to that of the coarser truncation."""

@@ -11,8 +11,8 @@ from fpsolve.grids import diagnostics
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.model.fibre import FibreModel
 from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.persistence import Persistence
 from fpsolve.reduced.hydrodynamic.effective_potential import EffectivePotential
-from fpsolve.reduced.hydrodynamic.persistence import Persistence
 from fpsolve.studies.limits.plane_limit import Approximation
 
 __all__ = ["distances", "second_moment"]

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Any
 
+from fpsolve.model.persistence import Persistence
 from fpsolve.model.potentials.potential import Potential
 from fpsolve.paths.laws import GaussianLaw
-from fpsolve.reduced.hydrodynamic.persistence import Persistence
 from fpsolve.studies.limits.large_noise_cases import resolution_for
 
 __all__ = ["Settings", "options_of", "settings_of"]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from typing import Any
 
 from fpsolve._support.arrays import Array
@@ -20,7 +21,7 @@ from fpsolve.web.statistics.zones import coefficient_of_variation, mean_density
 __all__ = ["Measured"]
 
 
-class Measured:
+class Measured(ABC):
     """Methods of what has a `length_density`, a `pixel` and an `orientation`.
 
     Lengths are in the unit of the pixel. Every number has a `standard_error` from
@@ -30,14 +31,14 @@ class Measured:
     length_density: Array
 
     @property
+    @abstractmethod
     def pixel(self) -> float:
         """Side of a pixel."""
-        raise NotImplementedError
 
     @property
+    @abstractmethod
     def orientation(self) -> Array:
         """⟨τ⊗τ⟩ of every pixel."""
-        raise NotImplementedError
 
     def mean_length_density(self, *, block: float | None = None) -> Estimate:
         """⟨m⟩, mean laid length per area; 1/(v d) is expected.
