@@ -1,6 +1,7 @@
 """The public names and where each of them lives: `__init__.py` reads this table."""
 
 from . import errors as errors
+from . import fibre as fibre
 from . import interop as interop
 from . import paths as paths
 from . import plotting as plotting

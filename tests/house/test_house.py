@@ -16,7 +16,7 @@ FLOORS = (
     ("model",),
     ("grids",),
     ("evolution",),
-    ("density", "paths", "spectral", "reduced"),
+    ("density", "paths", "spectral", "reduced", "fibre"),
     ("web",),
     ("studies", "interop"),
     ("results",),
