@@ -25,6 +25,7 @@ from .errors import ConfigurationError as ConfigurationError
 from .errors import CurvatureRangeError as CurvatureRangeError
 from .errors import DomainTooSmallError as DomainTooSmallError
 from .errors import EntropyRiseError as EntropyRiseError
+from .errors import EquilibriumError as EquilibriumError
 from .errors import FileFormatError as FileFormatError
 from .errors import FpsolveError as FpsolveError
 from .errors import GridMismatchError as GridMismatchError

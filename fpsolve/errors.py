@@ -23,6 +23,7 @@ __all__ = [
     "CurvatureRangeError",
     "DomainTooSmallError",
     "EntropyRiseError",
+    "EquilibriumError",
     "FileFormatError",
     "ForkedProcessError",
     "FpsolveError",
@@ -377,6 +378,19 @@ class SteadyStateError(FpsolveError):
     _says = (
         "steady state not reached: residual {residual:.2g} exceeds tolerance "
         "{tolerance:g}; refine the grid, shorten `ds` or enlarge `tolerance`."
+    )
+
+
+@stated
+class EquilibriumError(FpsolveError):
+    """A fibre did not come to rest."""
+
+    residual: float = said("Largest force left on a node, relative to the whole.")
+    tolerance: float = said("Residual asked for.")
+    _says = (
+        "no position of rest was found: a force of {residual:.2g} of the weight and "
+        "the stiffness is left, {tolerance:g} are allowed; give a `shape` that is "
+        "nearer to it."
     )
 
 

@@ -1,11 +1,23 @@
-"""A fibre in the air of the process: what flows around it, and what that does to it."""
+"""A fibre in the air: where it rests, how it swings, and how air pulls at it."""
 
 from fpsolve.fibre.drag import drag_coefficients, drag_force, drag_resistances
+from fpsolve.fibre.ends import Clamped, Free, Hinged
+from fpsolve.fibre.rest import Equilibrium, equilibrium
+from fpsolve.fibre.string import String
 from fpsolve.fibre.turbulence import TurbulenceSpectrum
+from fpsolve.fibre.vibrations import Modes, modes
 
 __all__ = [
+    "Clamped",
+    "Equilibrium",
+    "Free",
+    "Hinged",
+    "Modes",
+    "String",
     "TurbulenceSpectrum",
     "drag_coefficients",
     "drag_force",
     "drag_resistances",
+    "equilibrium",
+    "modes",
 ]

@@ -97,6 +97,11 @@ EXAMPLES = [
         "the grid, shorten `ds` or enlarge `tolerance`.",
     ),
     (
+        errors.EquilibriumError(residual=1e-3, tolerance=1e-10),
+        "no position of rest was found: a force of 0.001 of the weight and the "
+        "stiffness is left, 1e-10 are allowed; give a `shape` that is nearer to it.",
+    ),
+    (
         errors.ToleranceError(reached=2.5e-6, tolerance=1e-10),
         "tolerance 1e-10 not reached: the error is estimated at 2.5e-06; raise "
         "`memory_limit` or enlarge `tolerance`.",
