@@ -24,6 +24,7 @@ from .errors import CirculationError as CirculationError
 from .errors import ConfigurationError as ConfigurationError
 from .errors import CurvatureRangeError as CurvatureRangeError
 from .errors import DomainTooSmallError as DomainTooSmallError
+from .errors import EdgeLengthError as EdgeLengthError
 from .errors import EntropyRiseError as EntropyRiseError
 from .errors import EquilibriumError as EquilibriumError
 from .errors import FileFormatError as FileFormatError

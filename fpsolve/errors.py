@@ -22,6 +22,7 @@ __all__ = [
     "ConfigurationError",
     "CurvatureRangeError",
     "DomainTooSmallError",
+    "EdgeLengthError",
     "EntropyRiseError",
     "EquilibriumError",
     "FileFormatError",
@@ -378,6 +379,19 @@ class SteadyStateError(FpsolveError):
     _says = (
         "steady state not reached: residual {residual:.2g} exceeds tolerance "
         "{tolerance:g}; refine the grid, shorten `ds` or enlarge `tolerance`."
+    )
+
+
+@stated
+class EdgeLengthError(FpsolveError):
+    """A step of a fibre that keeps its length was not found."""
+
+    t: float = said("Time at which the step begins.")
+    dt: float = said("Length of the step.")
+    stretched: float = said("Relative deviation of an edge that is left.")
+    _says = (
+        "no step of {dt:g} s was found from t = {t:g} s on in which the fibre keeps "
+        "its length, an edge is off by a part of {stretched:.2g}; take more `n_steps`."
     )
 
 

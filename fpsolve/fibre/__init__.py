@@ -1,7 +1,8 @@
-"""A fibre in the air: where it rests, how it swings, and how air pulls at it."""
+"""A fibre in the air: where it rests, how it moves, and how air pulls at it."""
 
 from fpsolve.fibre.drag import drag_coefficients, drag_force, drag_resistances
 from fpsolve.fibre.ends import Clamped, Free, Hinged
+from fpsolve.fibre.motion import Motion, simulate
 from fpsolve.fibre.rest import Equilibrium, equilibrium
 from fpsolve.fibre.string import String
 from fpsolve.fibre.turbulence import TurbulenceSpectrum
@@ -13,6 +14,7 @@ __all__ = [
     "Free",
     "Hinged",
     "Modes",
+    "Motion",
     "String",
     "TurbulenceSpectrum",
     "drag_coefficients",
@@ -20,4 +22,5 @@ __all__ = [
     "drag_resistances",
     "equilibrium",
     "modes",
+    "simulate",
 ]

@@ -1,0 +1,210 @@
+"""A fibre in motion."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from fpsolve._support.arrays import Array, check_finite_numbers
+from fpsolve._support.checks import (
+    check_flag,
+    check_integer,
+    check_non_negative,
+    check_positive,
+    check_real,
+)
+from fpsolve.fibre.forces import Forces
+from fpsolve.fibre.shapes import checked_shape, first_shape
+from fpsolve.fibre.string import String
+from fpsolve.fibre.theta_step import ThetaStep
+
+__all__ = ["Motion", "simulate"]
+
+# Of the largest velocity: parts of a given one that would stretch an edge.
+RIGID = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """What a fibre did: series at every step, positions and velocities where saved.
+
+    Attributes
+    ----------
+    string : String
+    t : ndarray, shape (n_steps + 1,)
+        Times of the steps in s.
+    kinetic, potential : ndarray, shape (n_steps + 1,)
+        Energies of motion, and of bending and weight, in J.
+    largest_tension : ndarray, shape (n_steps + 1,)
+        Largest |T| in N of the step that ends there; NaN before the first.
+    stretched : ndarray, shape (n_steps + 1,)
+        Largest relative deviation of an edge from its length.
+    iterations : ndarray of int, shape (n_steps + 1,)
+        Of Newton's method; 0 before the first step.
+    saved : ndarray, shape (n_saved,)
+        Times at which positions were kept.
+    r, v : ndarray, shape (n_saved, n_edges + 1, 3)
+        Positions in m and velocities in m/s.
+    position_error : float
+        Bound of the error of the last positions in m from the length of the steps: the
+        distance to those of half as many, three times the error at order 2; with θ > ½,
+        of order 1, twice the distance. Infinite for an odd number of steps, or if not
+        asked for.
+    """
+
+    string: String
+    t: Array
+    kinetic: Array
+    potential: Array
+    largest_tension: Array
+    stretched: Array
+    iterations: NDArray[np.int64]
+    saved: Array
+    r: Array
+    v: Array
+    position_error: float = np.inf
+
+    @property
+    def energy(self) -> Array:
+        """Kinetic and potential energy in J."""
+        return np.asarray(self.kinetic + self.potential)
+
+    def __repr__(self) -> str:
+        return (
+            f"Motion({self.string.n_edges} edges, {self.t.size - 1} steps to t = "
+            f"{self.t[-1]:g} s)"
+        )
+
+
+def simulate(
+    string: String,
+    t_end: float,
+    n_steps: int,
+    *,
+    shape: ArrayLike | None = None,
+    velocity: ArrayLike | None = None,
+    theta: float = 0.5,
+    damping: float = 0.0,
+    save_every: int | None = None,
+    estimate_error: bool = True,
+) -> Motion:
+    """ρA ∂_tt r + c ∂_t r = ∂_s(T ∂_s r − ∂_s(EI ∂_ss r)) + ρA g, |∂_s r| = 1.
+
+    By the θ-scheme, whose tension is one more unknown of every step: edges have their
+    length to 1e-12 after each, for any step. With θ = ½ it is of order 2 and keeps the
+    energy of a fibre without damping to the residual of Newton's method; with θ = 1 it
+    is of order 1 and damps what swings faster than 1/Δt. Of order 2 in the edges.
+
+    Parameters
+    ----------
+    string : String
+    t_end : float
+        In s; the motion begins at 0.
+    n_steps : int
+    shape : array_like, shape (n_edges + 1, 3), optional
+        Positions at the beginning; by default straight, or an arc between two held
+        ends.
+    velocity : array_like, shape (n_edges + 1, 3) or (3,), optional
+        At the beginning, in m/s; it must not stretch the fibre. By default at rest.
+    theta : float
+        From ½ to 1.
+    damping : float
+        c in N s/m² on every piece of the fibre.
+    save_every : int, optional
+        Keep positions of every so-many-th step, and of the last; by default of the
+        first and the last.
+    estimate_error : bool
+        Repeat the motion with half of the steps, for `position_error`.
+
+    Returns
+    -------
+    Motion
+
+    Raises
+    ------
+    ValueError
+        If a number is out of its range, the shape does not fit the fibre, or the
+        velocity would stretch it.
+    EdgeLengthError
+        If Newton's method does not converge, as for steps in which an edge turns
+        around.
+
+    References
+    ----------
+    [KMW09]_, equation (4).
+    """
+    t_end = check_positive("t_end", t_end)
+    n_steps = check_integer("n_steps", n_steps, 1)
+    every = (
+        n_steps if save_every is None else check_integer("save_every", save_every, 1)
+    )
+    theta = check_real("theta", theta)
+    if not 0.5 <= theta <= 1:
+        raise ValueError(
+            f"`theta` must lie between 0.5 and 1, got {theta:g}; 0.5 keeps the energy, "
+            "below it steps grow."
+        )
+    damping = check_non_negative("damping", damping)
+    r = first_shape(string) if shape is None else checked_shape(string, shape)
+    v = _checked_velocity(string, r, velocity)
+    estimate_error = check_flag("estimate_error", estimate_error)
+    step = ThetaStep(string, t_end / n_steps, theta, damping)
+    motion = _motion(step, r, v, n_steps, every)
+    if not estimate_error or n_steps % 2:
+        return motion
+    half = n_steps // 2
+    other = _motion(replace(step, dt=2 * step.dt), r, v, half, half)
+    away = float(np.linalg.norm(other.r[-1] - motion.r[-1], axis=1).max())
+    return replace(motion, position_error=away if theta == 0.5 else 2 * away)
+
+
+def _motion(step: ThetaStep, r: Array, v: Array, n_steps: int, every: int) -> Motion:
+    string, forces = step.string, Forces(step.string)
+    t: Array = np.arange(n_steps + 1.0) * step.dt
+    series = np.zeros((5, n_steps + 1))
+    saves = sorted({*range(0, n_steps + 1, every), n_steps})
+    kept = []
+    tension, iterations = np.zeros(string.n_edges), 0
+    for number in range(n_steps + 1):
+        if number:
+            r, v, tension, iterations = step(r, v, tension, t[number - 1])
+        series[:, number] = (
+            0.5 * string.masses @ (v**2).sum(axis=1),
+            forces.energy(r),
+            np.abs(tension).max() if number else np.nan,
+            np.abs(forces.stretched(r)).max() / string.edge,
+            iterations,
+        )
+        if number in saves:
+            kept.append((r, v))
+    positions, velocities = (np.array(one) for one in zip(*kept, strict=True))
+    kinetic, potential, largest, stretched, counted = series
+    return Motion(
+        string, t, kinetic, potential, largest, stretched, counted.astype(np.int64),
+        t[saves], positions, velocities,
+    )  # fmt: skip
+
+
+def _checked_velocity(string: String, r: Array, velocity: ArrayLike | None) -> Array:
+    """As an array of all nodes; ValueError if an edge or a held end would move."""
+    if velocity is None:
+        return np.zeros(r.shape)
+    v = check_finite_numbers("velocity", velocity)
+    if v.shape not in (r.shape, (3,)):
+        raise ValueError(
+            f"`velocity` must have the shape {r.shape} or (3,), got {v.shape}."
+        )
+    v = np.array(np.broadcast_to(v, r.shape))
+    held = np.setdiff1d(np.arange(r.shape[0]), string.moving)
+    size = np.abs(v).max()
+    if np.abs(v[held]).max(initial=0.0) > 0:
+        raise ValueError("`velocity` must vanish at an end that is held.")
+    along = (np.diff(v, axis=0) * np.diff(r, axis=0)).sum(axis=1) / string.edge
+    if not (np.abs(along) <= RIGID * size).all():
+        raise ValueError(
+            f"`velocity` must not stretch the fibre, got {np.abs(along).max():.2g} m/s "
+            "along an edge; neighbours move across the edge between them only."
+        )
+    return v
