@@ -41,7 +41,9 @@ _TABLES = (
     "solver", "sampler", "versions", "environment", "provenance", "call",
     "fpsolve_checksums", "process", "web",
 )  # fmt: skip
-_LISTS = ("saved_steps", "truncation", "sectors", "fpsolve_attributes")
+_LISTS = (
+    "saved_steps", "truncation", "sectors", "fpsolve_attributes", "nozzle_phases",
+)  # fmt: skip
 OWN = frozenset((*_TEXTS, *_NUMBERS, *_INTEGERS, *_TABLES, *_LISTS))
 
 

@@ -32,6 +32,7 @@ __all__ = [
     "CALL",
     "IDENTITY",
     "KEPT",
+    "RESULT",
     "USER_CODE",
     "WHERE",
     "Call",
@@ -47,6 +48,8 @@ Arrays = dict[str, NDArray[Any]]
 CALL = "call"
 # An object is a dictionary with one key, its kind; JSON has no other way to say it.
 USER_CODE, ARRAY, KEPT, _TUPLE = "$user_code", "$array", "$kept", "$tuple"
+# A result of another call, that was an argument of this one.
+RESULT = "$result"
 # Beside the name of a user's code stands what it is, for a comparison to see.
 IDENTITY = "identity"
 # Arguments that only say where something is computed, or how it is told.
@@ -147,7 +150,8 @@ def described(value: Any, name: str, arrays: Arrays) -> Any:
     """Return a value as JSON holds it; long arrays go into `arrays`.
 
     An object of a class that says in `_recorded` how it is called is described by its
-    `_recorded_parts()`, or else its `to_dict()`. A class derived from it is not.
+    `_recorded_parts()`, or else its `to_dict()`. A class derived from it is not. A
+    result is described by its own call.
 
     Parameters
     ----------
@@ -177,6 +181,8 @@ def described(value: Any, name: str, arrays: Arrays) -> Any:
         }
     if isinstance(value, list | tuple):
         return _series(value, name, arrays)
+    if isinstance(getattr(value, "call", None), Call):
+        return _result(value.call, arrays)
     if isinstance(value, Kept):
         return {KEPT: value.attribute, IDENTITY: digest_of(value.values)}
     if isinstance(value, np.ndarray) and value.dtype.kind in "biuf":
@@ -187,6 +193,12 @@ def described(value: Any, name: str, arrays: Arrays) -> Any:
         return value
     code = getattr(value, "__qualname__", type(value).__qualname__)
     return {USER_CODE: code, IDENTITY: digest_or_none(value)}
+
+
+def _result(call: Call, arrays: Arrays) -> Any:
+    """How a result was made, which says what it is."""
+    arrays.update(call.arrays)
+    return {RESULT: {"function": call.function, "arguments": call.arguments}}
 
 
 def _series(value: Any, name: str, arrays: Arrays) -> Any:

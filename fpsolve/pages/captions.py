@@ -64,6 +64,11 @@ CAPTIONS = {
         "density of the angle; dashed: uniform.",
         "Map of the stationary density and curve over the angle",
     ),
+    "mean-pattern/pattern": (
+        "Expected length of fibre per area, relative to its mean, on two by two cells "
+        "of the pattern.",
+        "Map of the expected length of fibre per area",
+    ),
     "periodic-state/phases": (
         "Above: the density over the plane at four phases of the period; white: "
         "contours of c exp(-B). Below: E ξ and E τ over the period.",

@@ -26,6 +26,7 @@ PAGES: dict[str, str | Callable[[Any, str], Section]] = {
     "energy-paths": "fpsolve.pages.plain:energy_paths",
     "hydrodynamic-paths": "fpsolve.pages.plain:hydrodynamic_paths",
     "web": "fpsolve.pages.web:section",
+    "mean-pattern": "fpsolve.pages.pattern:section",
     "check": "fpsolve.pages.cross_check:section",
     "spectrum": "fpsolve.pages.spectrum:section",
     "web-prediction": "fpsolve.pages.predicted_web:section",

@@ -26,6 +26,7 @@ from fpsolve.plotting.limits import plot_large_noise, plot_white_noise
 from fpsolve.plotting.marginals import plot_marginals
 from fpsolve.plotting.moments import plot_moments
 from fpsolve.plotting.overview import plot_overview
+from fpsolve.plotting.pattern import plot_pattern
 from fpsolve.plotting.periodic import plot_periodic_state
 from fpsolve.plotting.predicted_web import plot_predicted_web
 from fpsolve.plotting.rates import (
@@ -156,6 +157,7 @@ FIGURES: dict[str, Callable[[Any], Figures]] = {
         rose=(plot_rose, holds_fibre),
         spectrum=(plot_web_spectrum, holds_blocks),
     ),
+    "mean-pattern": each(pattern=(plot_pattern, always)),
     "check": each(check=(plot_cross_check, always)),
     # Beside the model that they are of.
     "spectrum": each(spectrum=(plot_spectrum, lambda found: found.model is not None)),

@@ -21,12 +21,14 @@ __all__ = ["plot_pattern"]
 # stands above and below it, in inches.
 POINTS, ACROSS, AROUND, FOOT = 240, 5.6, 0.35, 0.5
 IN_A_ROW = 2
+# Cells that are shown in each direction: enough to see that they are repeated.
+N_CELLS = 2
 
 
 def plot_pattern(
     patterns: MeanPattern | Sequence[MeanPattern],
-    length: float,
-    width: float,
+    length: float | None = None,
+    width: float | None = None,
     titles: Sequence[str] = (),
 ) -> Figure:
     """E m relative to its mean on a part of the belt, on one scale of colours.
@@ -35,14 +37,17 @@ def plot_pattern(
     ----------
     patterns : MeanPattern or sequence of MeanPattern
         Drawn two by two.
-    length, width : float
-        Of the part that is shown, along the belt and across it.
+    length, width : float, optional
+        Of the part that is shown, along the belt and across it; by default two cells of
+        the first pattern.
     titles : sequence of str
         One for every pattern.
     """
     several = [patterns] if isinstance(patterns, MeanPattern) else list(patterns)
     for one in several:
         check_kind("patterns", one, MeanPattern, "it is what `mean_pattern` returns")
+    length = N_CELLS * several[0].length if length is None else length
+    width = N_CELLS * several[0].width if width is None else width
     length, width = check_positive("length", length), check_positive("width", width)
     x1 = np.linspace(0.0, length, POINTS)
     x2 = np.linspace(0.0, width, max(2, round(POINTS * width / length)))

@@ -108,6 +108,10 @@ KINDS = {
     "web": Kind(
         "webs", "fpsolve.web.lay_web:lay_web", "fpsolve.web.web:Web", counts="steps",
     ),
+    "mean-pattern": Kind(
+        "mean patterns of webs", "fpsolve.web.pattern:mean_pattern",
+        "fpsolve.web.pattern_result:MeanPattern",
+    ),
     "check": Kind(
         "checks of density against paths",
         "fpsolve.studies.agreement.cross_check:cross_check",

@@ -10,6 +10,7 @@ import numpy as np
 from fpsolve._support.arrays import Array, check_finite_numbers
 from fpsolve._support.checks import check_kind, check_positive, shown
 from fpsolve.density.periodic.result import PeriodicState
+from fpsolve.evolution.call import recorded
 from fpsolve.web.pattern_harmonics import Complex, Harmonics, harmonics_of
 from fpsolve.web.pattern_result import MeanPattern
 
@@ -18,6 +19,7 @@ __all__ = ["MeanPattern", "mean_pattern"]
 IN_PHASE, INDEPENDENT = "in phase", "independent"
 
 
+@recorded()
 def mean_pattern(
     state: PeriodicState, *, spacing: float, phases: Any = IN_PHASE
 ) -> MeanPattern:

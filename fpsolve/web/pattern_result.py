@@ -4,17 +4,16 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any, ClassVar
 
 import numpy as np
 
 from fpsolve._support.arrays import Array, check_finite_numbers
 from fpsolve._support.checks import check_integer, check_non_negative
-from fpsolve._support.labels import labels
+from fpsolve.evolution.call import Call
+from fpsolve.evolution.saved import Saved
 from fpsolve.web.pattern_harmonics import Complex
-
-if TYPE_CHECKING:
-    import xarray as xr
+from fpsolve.web.pattern_layout import PATTERN
 
 __all__ = ["MeanPattern"]
 
@@ -25,7 +24,7 @@ FARTHEST = -(2**31)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class MeanPattern:
+class MeanPattern(Saved):
     """Expected length of fibre per area, E m(x) = Σ c_nm e^{i(k₁x₁ + k₂x₂)}/(v d).
 
     x₁ goes along the belt and with it, x₂ across it, with the first nozzle at 0. The
@@ -47,7 +46,14 @@ class MeanPattern:
         What |c_nm| may be off.
     phases : str or tuple of float
         As asked for.
+    call : Call or None
+        How it was made, and how the state was of which it is.
+    provenance : dict
+        Versions, environment, date and times.
     """
+
+    kind: ClassVar[str] = "mean-pattern"
+    layout = PATTERN
 
     length: float
     width: float
@@ -56,6 +62,8 @@ class MeanPattern:
     coefficients: Complex = field(repr=False)
     errors: Array = field(repr=False)
     phases: str | tuple[float, ...]
+    call: Call | None = None
+    provenance: dict[str, Any] = field(default_factory=dict)
 
     def __repr__(self) -> str:
         waves = (
@@ -175,22 +183,6 @@ class MeanPattern:
         second = np.exp(np.multiply.outer(np.ravel(x2), across))
         return np.asarray((second @ self.coefficients.T @ first.T).real)
 
-    def to_xarray(self) -> xr.Dataset:
-        """One cell of the pattern as a labelled Dataset."""
-        import xarray as xr
-
-        about = {
-            "title": "Expected length of fibre per area", "spacing": self.spacing,
-            "mean": self.mean,
-        }  # fmt: skip
-        words = "expected length of fibre per area"
-        values = (("x2", "x1"), self.length_density, labels(words))
-        axes = {
-            "x1": ("x1", self.x1, labels("along the belt")),
-            "x2": ("x2", self.x2, labels("across the belt")),
-        }
-        return xr.Dataset({"length_density": values}, axes, attrs=about)
-
     def _points(self, axis: int, period: float) -> Array:
         n = POINTS * self.coefficients.shape[axis] + 1
         return np.asarray(np.arange(n) * (period / n), dtype=np.float64)
@@ -213,10 +205,3 @@ def along_the_belt(coefficients: Any) -> Any:
 def across_the_belt(coefficients: Any) -> Any:
     """Those of (0, m), m = 1, 2, …."""
     return coefficients[coefficients.shape[0] // 2, coefficients.shape[1] // 2 + 1 :]
-
-
-def told(sizes: Array, errors: Array) -> str:
-    """The largest with its error."""
-    if not sizes.size:
-        return "none"
-    return f"{sizes.max():.3g} ± {errors[sizes.argmax()]:.1g}"

@@ -124,6 +124,9 @@ MAKERS = {
         fp.Process(5e-3, 5e-3, 15.0, 0.2, 20.0), width=0.064, length=0.064,
         pixel=1e-3, positions=[0.0, 4e-3, 5e-3], spacing=2e-3, titer=1e-4, seed=4,
     ),
+    "mean-pattern": lambda: fp.mean_pattern(
+        result("periodic-state"), spacing=2.0, phases=[0.0, 1.5]
+    ),
     "check": lambda: studies.cross_check(
         REST, start_on(FINER), [0.5], n_paths=1000, seed=1, grid=FINER, ds=0.25,
         paths_ds=0.125, solve_options={"boundary_tolerance": 1.0},

@@ -191,7 +191,7 @@ def test_a_pattern_is_labelled(rotating):
     dataset = pattern.to_xarray()
     assert dataset["length_density"].dims == ("x2", "x1")
     np.testing.assert_array_equal(dataset["length_density"], pattern.length_density)
-    assert dataset.attrs["mean"] == pattern.mean
+    assert dataset["mean"] == pattern.mean
     assert "MeanPattern(3.14159 × 4, largest wave along the belt" in repr(pattern)
 
 

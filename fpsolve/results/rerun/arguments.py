@@ -11,7 +11,7 @@ import numpy as np
 
 from fpsolve.density.schemes.dictionaries import scheme_from_dict
 from fpsolve.errors import NotRepeatableError
-from fpsolve.evolution.call import ARRAY, KEPT, USER_CODE, Call
+from fpsolve.evolution.call import ARRAY, KEPT, RESULT, USER_CODE, Call
 from fpsolve.grids.dictionaries import grid_from_dict
 from fpsolve.grids.plane import PlaneGrid
 from fpsolve.model.potentials.dictionaries import potential_from_dict
@@ -19,26 +19,13 @@ from fpsolve.model.process import Process
 from fpsolve.model.reading import model_from_dict
 from fpsolve.paths.law_dataset import law_from_formula
 from fpsolve.paths.laws import DensityLaw
+from fpsolve.results.rerun.calling import OfOwner, result_of
 from fpsolve.spectral.bases.sectors import Sector
 
-__all__ = ["READERS", "OfOwner", "arguments_of", "unrecorded"]
+__all__ = ["READERS", "arguments_of", "unrecorded"]
 
 # Characters of a description that a message shows.
 _LONGEST = 120
-
-
-@dataclass(frozen=True)
-class OfOwner:
-    """An argument that the object makes whose method is called.
-
-    Attributes
-    ----------
-    method : str
-    options : dict
-    """
-
-    method: str
-    options: Mapping[str, Any]
 
 
 def _seed(about: Mapping[str, Any]) -> np.random.SeedSequence:
@@ -64,6 +51,7 @@ READERS: dict[str, Callable[[Any], Any]] = {
     _SCHEME: _scheme,
     "$seed": _seed,
     "$energy_grid": lambda about: OfOwner("grid", about),
+    RESULT: result_of,
     "$tuple": tuple,
 }
 

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import inspect
 import warnings
-from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any
 
-from fpsolve._support.checks import shown
 from fpsolve.errors import NotRepeatableError, RunError
 from fpsolve.evolution.call import Call
-from fpsolve.results.kinds import KINDS, kind_of, named
+from fpsolve.results.kinds import KINDS, kind_of
 from fpsolve.results.load import opened
-from fpsolve.results.rerun.arguments import OfOwner, arguments_of, unrecorded
+from fpsolve.results.rerun.arguments import arguments_of, unrecorded
+from fpsolve.results.rerun.calling import called, name_of
 from fpsolve.results.rerun.costs import check_call
 
 __all__ = ["rerun"]
@@ -70,7 +68,7 @@ def rerun(result: Any, **overrides: Any) -> Any:
 def _repeated(result: Any, overrides: dict[str, Any]) -> Any:
     """Call the function of a result as it was called, with the overrides."""
     place = KINDS[kind_of(result)].function
-    name = place.partition(":")[2] if isinstance(place, str) else place.__qualname__
+    name = name_of(place)
     call = _call_of(result)
     if call is None:
         raise unrecorded("how it was computed", f"`{name}`")
@@ -81,41 +79,7 @@ def _repeated(result: Any, overrides: dict[str, Any]) -> Any:
         )
     arguments = arguments_of(call, overrides, result)
     check_call(name, arguments, result, overrides)
-    return _noted(result, _called(place, arguments, overrides), call)
-
-
-def _called(
-    place: str | Callable[..., Any], arguments: dict[str, Any], given: Mapping[str, Any]
-) -> Any:
-    """The value of a function, or of a method of an object made for it."""
-    if not isinstance(place, str) or "." not in place.partition(":")[2]:
-        function = named(place)
-        return function(**_known(function, arguments, given))
-    module, _, name = place.partition(":")
-    owner, _, method = name.rpartition(".")
-    kind = named(f"{module}:{owner}")
-    own = inspect.signature(kind).parameters
-    made = kind(**{name: arguments.pop(name) for name in own if name in arguments})
-    function = getattr(made, method)
-    return function(**{
-        name: getattr(made, one.method)(**one.options) if isinstance(one, OfOwner)
-        else one
-        for name, one in _known(function, arguments, given).items()
-    })  # fmt: skip
-
-
-def _known(
-    function: Callable[..., Any], arguments: dict[str, Any], given: Mapping[str, Any]
-) -> dict[str, Any]:
-    """The arguments; NotRepeatableError for one that the function does not have."""
-    known = inspect.signature(function).parameters
-    unknown = arguments.keys() - known.keys() - given.keys()
-    if unknown:
-        raise NotRepeatableError(
-            f"the result must be made with the arguments {', '.join(known)} to be "
-            f"repeated, got {shown(sorted(unknown)[0])}; update fpsolve."
-        )
-    return arguments
+    return _noted(result, called(place, arguments, overrides), call)
 
 
 def _call_of(result: Any) -> Call | None:
