@@ -22,7 +22,7 @@ the force for A²h of any size.
 
 import math
 from fractions import Fraction
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numba import prange
@@ -36,11 +36,13 @@ XI1, XI2, COSINE, SINE, TURNS = (LANES * row for row in range(5))
 NORMAL, ANGLE = 5 * LANES, 9 * LANES
 FORCE1, FORCE2 = 10 * LANES, 11 * LANES
 KEPT1, KEPT2, KEPT3, KEPT4, KEPT5 = (LANES * row for row in range(12, 17))
-N_ROWS = 17
+# Weights of what the nozzle of a path moves otherwise than γ.
+WEIGHT1, WEIGHT2 = 17 * LANES, 18 * LANES
+N_ROWS = 19
 N_STATE = 5
 # Further rows for smooth paths: the curvature, noise of κ, of α and of ᾱ, and three
 # standard normal numbers for each of four steps.
-KAPPA, NOISE1, NOISE2, NOISE3, NUMBERS = (LANES * row for row in range(17, 22))
+KAPPA, NOISE1, NOISE2, NOISE3, NUMBERS = (LANES * row for row in range(19, 24))
 N_NUMBERS, N_STEPS = 3, 4
 N_SMOOTH_ROWS = N_ROWS + 4 + N_NUMBERS * N_STEPS
 N_SMOOTH_STATE = N_STATE + 1
@@ -70,6 +72,24 @@ class Noise(NamedTuple):
     step: int
     key: tuple[int, int]
     scale: float
+
+
+class Shifts(NamedTuple):
+    """Displacements of γ, and of what every nozzle adds to it.
+
+    Attributes
+    ----------
+    common : ndarray, shape (n_steps, 2, 2)
+        γ over the first and second half of every step.
+    own : ndarray, shape (n_steps, 2, 2, 2)
+        Two motions over the same halves, on the last axis.
+    weights : ndarray, shape (2, n_paths) or (2, 0)
+        By which each path multiplies and adds them; none where all move as γ.
+    """
+
+    common: Any
+    own: Any
+    weights: Any
 
 
 class SmoothStep(NamedTuple):
@@ -258,6 +278,23 @@ def translate_block(half, shift1, shift2, w):
 
 
 @njit(cache=True, fastmath={"contract"}, error_model="numpy")
+def load_weights(weights, start, n_lanes, w):
+    """Weights of the paths into the work array; unused lanes keep the last path."""
+    for i in range(LANES):
+        w[WEIGHT1 + i] = weights[0, start + min(i, n_lanes - 1)]
+        w[WEIGHT2 + i] = weights[1, start + min(i, n_lanes - 1)]
+
+
+@njit(cache=True, fastmath={"contract"}, error_model="numpy")
+def displace_block(own, w):
+    """ξ ← ξ - (the two motions in the columns of `own`, weighted for every path)."""
+    a1, b1, a2, b2 = own[0, 0], own[0, 1], own[1, 0], own[1, 1]
+    for i in range(LANES):
+        w[XI1 + i] -= a1 * w[WEIGHT1 + i] + b1 * w[WEIGHT2 + i]
+        w[XI2 + i] -= a2 * w[WEIGHT1 + i] + b2 * w[WEIGHT2 + i]
+
+
+@njit(cache=True, fastmath={"contract"}, error_model="numpy")
 def force_block(kind, first, second, w):
     """∇B at ξ: kind and the two parameters of the potential."""
     if kind == QUADRATIC:
@@ -441,8 +478,8 @@ def advance_paths(noise, ds, potential, shifts, method, trace, state):
     ds : float
     potential : (int, float, float)
         Kind and its two parameters.
-    shifts : ndarray, shape (n_steps, 2, 2)
-        γ over the first and second half of every step.
+    shifts : Shifts
+        What a nozzle adds is taken before and behind the force.
     method : int
     trace : ndarray, shape (n_steps, 5, n_paths) or (0, 5, 0)
         Receives the state after every step, if it has room.
@@ -450,25 +487,32 @@ def advance_paths(noise, ds, potential, shifts, method, trace, state):
         ξ1, ξ2, cos α, sin α and full turns; changed in place.
     """
     path, step, key, noise_scale = noise
-    n_paths, n_steps = state.shape[1], shifts.shape[0]
+    common, own, weights = shifts
+    n_paths, n_steps, phased = state.shape[1], common.shape[0], weights.shape[1] > 0
     for block in prange((n_paths + LANES - 1) // LANES):
         w = np.zeros(N_ROWS * LANES)
         bits = w.view(np.int64)
         start = block * LANES
         n_lanes = min(LANES, n_paths - start)
         load_block(state, start, n_lanes, w)
+        if phased:
+            load_weights(weights, start, n_lanes, w)
         for j in range(n_steps):
             number = (step + j) & 3
             if j == 0 or number == 0:
                 group = (step + j) >> 2
                 standard_normals(path + start, group, key[0], key[1], w, bits)
             angle_block(NORMAL + number * LANES, noise_scale, w)
+            if phased:
+                displace_block(own[j, 0], w)
             if method == SPLITTING:
-                splitting_step(ds, *potential, shifts[j], w)
+                splitting_step(ds, *potential, common[j], w)
             elif method == EULER_MARUYAMA:
-                euler_step(ds, *potential, shifts[j], w)
+                euler_step(ds, *potential, common[j], w)
             else:
-                heun_step(ds, *potential, shifts[j], w)
+                heun_step(ds, *potential, common[j], w)
+            if phased:
+                displace_block(own[j, 1], w)
             if trace.shape[0] > 0:
                 store_block(w, start, n_lanes, trace[j])
         store_block(w, start, n_lanes, state)
@@ -652,33 +696,40 @@ def advance_smooth_paths(path, step, key, law, potential, shifts, trace, state):
         As `fpsolve.paths.smooth_step` computes it.
     potential : (int, float, float)
         Kind and its two parameters.
-    shifts : ndarray, shape (n_steps, 2, 2)
-        γ over the first and second half of every step.
+    shifts : Shifts
+        What a nozzle adds is taken before and behind the force.
     trace : ndarray, shape (n_steps, 6, n_paths) or (0, 6, 0)
         Receives the state after every step, if it has room.
     state : ndarray, shape (6, n_paths)
         ξ1, ξ2, cos α, sin α, full turns and κ; changed in place.
     """
-    ds, weights, noise, spread = law
+    ds, turning, noise, spread = law
     kind, first, second = potential
-    n_paths, n_steps = state.shape[1], shifts.shape[0]
+    common, own, weights = shifts
+    n_paths, n_steps, phased = state.shape[1], common.shape[0], weights.shape[1] > 0
     for block in prange((n_paths + LANES - 1) // LANES):
         w = np.zeros(N_SMOOTH_ROWS * LANES)
         bits = w.view(np.int64)
         start = block * LANES
         n_lanes = min(LANES, n_paths - start)
         load_smooth_block(state, start, n_lanes, w)
+        if phased:
+            load_weights(weights, start, n_lanes, w)
         for j in range(n_steps):
             number = (step + j) & 3
             if j == 0 or number == 0:
                 group = (step + j) >> 2
                 numbers_of_four_steps(path + start, group, key[0], key[1], w, bits)
-            translate_block(0.5 * ds, shifts[j, 0, 0], shifts[j, 0, 1], w)
+            if phased:
+                displace_block(own[j, 0], w)
+            translate_block(0.5 * ds, common[j, 0, 0], common[j, 0, 1], w)
             force_block(kind, first, second, w)
             limit_force(0.25 * ds, w)
             noise_block(noise, NUMBERS + N_NUMBERS * number * LANES, w)
-            turn_block(ds, weights, spread, shifts[j, 1, 0], shifts[j, 1, 1], w)
+            turn_block(ds, turning, spread, common[j, 1, 0], common[j, 1, 1], w)
             rotate_block(w)
+            if phased:
+                displace_block(own[j, 1], w)
             if trace.shape[0] > 0:
                 store_smooth_block(w, start, n_lanes, trace[j])
         store_smooth_block(w, start, n_lanes, state)

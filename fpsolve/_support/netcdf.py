@@ -6,7 +6,7 @@ import gc
 import os
 import sys
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -40,7 +40,7 @@ def write_dataset(
     dataset: xr.Dataset,
     path: str | os.PathLike[str],
     engine: str | None = None,
-    streamed: Streamed | None = None,
+    streamed: Sequence[Streamed] = (),
 ) -> Path:
     """Write a dataset to a file, with checksums that `read_dataset` verifies.
 
@@ -55,8 +55,8 @@ def write_dataset(
         names; through a pipe that is read the finished file is written.
     engine : {"h5netcdf", "zarr"}, optional
         netCDF-4 or zarr; by default zarr for a path that ends in ".zarr".
-    streamed : Streamed, optional
-        One more variable, which does not fit into memory.
+    streamed : sequence of Streamed
+        Further variables, which do not fit into memory.
 
     Returns
     -------
@@ -84,11 +84,11 @@ def write_dataset(
         if engine == "zarr":
             dataset.to_zarr(draft, mode="w", consolidated=False)
         else:
-            needed = _plain_bytes(dataset) + getattr(streamed, "nbytes", 0)
+            needed = _plain_bytes(dataset) + sum(one.nbytes for one in streamed)
             check_room(path, needed, draft)
             dataset.to_netcdf(draft, engine="h5netcdf", encoding=_encoding(dataset))
-        if streamed is not None:
-            append(draft, engine, streamed)
+        for variable in streamed:
+            append(draft, engine, variable)
     return path
 
 

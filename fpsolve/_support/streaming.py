@@ -25,6 +25,10 @@ class Streamed(NamedTuple):
     blocks : iterable of ndarray
         Can be gone through more than once.
     attributes : dict
+    chunks : tuple of int
+        Of a zarr store; by default as the blocks.
+    parts : iterable of (index, ndarray), optional
+        The same numbers in the order of the chunks; by default the blocks.
     """
 
     name: str
@@ -33,6 +37,8 @@ class Streamed(NamedTuple):
     dtype: np.dtype[Any]
     blocks: Iterable[Any]
     attributes: dict[str, str]
+    chunks: tuple[int, ...] = ()
+    parts: Iterable[tuple[Any, Any]] | None = None
 
     @property
     def nbytes(self) -> int:
@@ -66,19 +72,20 @@ def _append_to_zarr(draft: Path, variable: Streamed) -> None:
     array = group.create_array(
         variable.name,
         shape=variable.shape,
-        chunks=(1, *variable.shape[1:]),
+        chunks=variable.chunks or (1, *variable.shape[1:]),
         dtype=variable.dtype,
         fill_value=float("nan"),
         dimension_names=variable.dimensions,
         attributes=dict(variable.attributes),
     )
-    for index, block in enumerate(variable.blocks):
+    parts = variable.parts
+    for index, block in enumerate(variable.blocks) if parts is None else parts:
         array[index] = block
     group.attrs[CHECKSUMS] = _complete(str(group.attrs[CHECKSUMS]), variable)
 
 
 def _complete(checksums: str, variable: Streamed) -> str:
     """Return the checksums with that of the variable."""
-    name, dimensions, shape, dtype, blocks, attributes = variable
+    name, dimensions, shape, dtype, blocks, attributes, *_ = variable
     digest = digest_of(name, dimensions, shape, dtype, attributes, blocks)
     return with_digest(checksums, name, digest)

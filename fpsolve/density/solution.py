@@ -158,4 +158,4 @@ class Solution(Evolution):
         dims = tuple(map(str, about.dims))
         streamed = Streamed("density", dims, densities.shape, densities.dtype,
                             densities, about.attrs)  # fmt: skip
-        return write_dataset(rest.drop_vars("density"), path, engine, streamed)
+        return write_dataset(rest.drop_vars("density"), path, engine, [streamed])

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fpsolve._kernels import paths as kernels
+from fpsolve._support.arrays import Array
 from fpsolve.model.curves.curve import Curve
 from fpsolve.model.potentials.free import FreePotential
 from fpsolve.model.potentials.linear import LinearPotential
@@ -15,12 +17,49 @@ from fpsolve.model.potentials.potential import Potential
 from fpsolve.model.potentials.power import PowerPotential
 from fpsolve.model.potentials.quadratic import QuadraticPotential
 
-__all__ = ["compiled_potential", "half_step_shifts"]
+__all__ = ["OwnMotion", "compiled_potential", "half_step_shifts", "step_shifts"]
 
 # c⁻ⁿ of a power is kept that far from the largest and the smallest number.
 MOST_DECADES = 250.0
 # Powers of ‖ξ‖² up to here are multiplied out.
 LARGEST_EVEN = 64
+
+
+@dataclass(frozen=True, eq=False)
+class OwnMotion:
+    """What the nozzle of every path adds to the motion of the curve.
+
+    Attributes
+    ----------
+    parts : (Curve, Curve)
+    weights : ndarray, shape (2, n_paths)
+        By which each path multiplies and adds them.
+    """
+
+    parts: tuple[Curve, Curve]
+    weights: Array
+
+    def of(self, path: int) -> OwnMotion:
+        """That of a single path."""
+        return replace(self, weights=self.weights[:, path : path + 1])
+
+
+def step_shifts(
+    curve: Curve,
+    own: OwnMotion | None,
+    s_start: float,
+    ds: float,
+    step: int,
+    n_steps: int,
+) -> kernels.Shifts:
+    """Displacements of γ and of what is added to it, over both halves of every step."""
+    common = half_step_shifts(curve, s_start, ds, step, n_steps)
+    if own is None:
+        return kernels.Shifts(common, np.zeros((0, 2, 2, 2)), np.zeros((2, 0)))
+    parts = [half_step_shifts(part, s_start, ds, step, n_steps) for part in own.parts]
+    return kernels.Shifts(
+        common, np.stack(parts, axis=-1), np.ascontiguousarray(own.weights)
+    )
 
 
 def compiled_potential(potential: Potential) -> tuple[int, float, float] | None:

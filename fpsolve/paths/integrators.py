@@ -19,9 +19,9 @@ from fpsolve._kernels import paths as kernels
 from fpsolve._support.arrays import Array
 from fpsolve.errors import NonFinitePathError
 from fpsolve.model.fibre import FibreModel
-from fpsolve.paths.forcing import compiled_potential, half_step_shifts
+from fpsolve.paths.forcing import OwnMotion, compiled_potential, step_shifts
 
-__all__ = ["Integrator", "translate"]
+__all__ = ["Integrator", "displace", "translate"]
 
 Gradient = Callable[[Array], Array]
 
@@ -77,6 +77,7 @@ class Integrator:
         step: int,
         n_steps: int,
         trace: Array | None = None,
+        own: OwnMotion | None = None,
     ) -> None:
         """Advance the state in place; `trace` receives it after every step.
 
@@ -87,6 +88,8 @@ class Integrator:
             Number of the first path and of the first step.
         n_steps : int
         trace : ndarray, shape (n_steps, n_state, n_paths), optional
+        own : OwnMotion, optional
+            Where nozzles do not all move as the curve.
 
         Raises
         ------
@@ -96,11 +99,13 @@ class Integrator:
         before = state.copy()
         if trace is None:
             trace = np.zeros((0, self.n_state, 0))
-        self._take(state, path, step, n_steps, trace)
+        shifts = self._shifts(step, n_steps, own)
+        self._take(state, path, step, shifts, trace)
         # A sum is finite unless one of its terms is not.
         if not math.isfinite(float(state.sum())):
             bad = int(np.argmin(np.isfinite(state).all(axis=0)))
-            self._complain(before[:, bad : bad + 1], path + bad, step, n_steps)
+            shifts = self._shifts(step, n_steps, None if own is None else own.of(bad))
+            self._complain(before[:, bad : bad + 1], path + bad, step, shifts)
 
     def n_fast(self, state: Array) -> int:
         """Paths at whose place |∇B| ds is above `largest_turn`."""
@@ -109,11 +114,13 @@ class Integrator:
             turn = self.ds * np.hypot(*slopes)
         return int(np.count_nonzero(turn > self.largest_turn))
 
-    def _take(
-        self, state: Array, path: int, step: int, n_steps: int, trace: Array
-    ) -> None:
+    def _shifts(self, step: int, n_steps: int, own: OwnMotion | None) -> kernels.Shifts:
         curve = self.model.curve
-        shifts = half_step_shifts(curve, self.s_start, self.ds, step, n_steps)
+        return step_shifts(curve, own, self.s_start, self.ds, step, n_steps)
+
+    def _take(
+        self, state: Array, path: int, step: int, shifts: kernels.Shifts, trace: Array
+    ) -> None:
         potential = compiled_potential(self.model.potential)
         if potential is None:
             self._take_staged(state, path, step, shifts, trace)
@@ -123,18 +130,20 @@ class Integrator:
         kernels.advance_paths(noise, self.ds, potential, shifts, method, trace, state)
 
     def _take_staged(
-        self, state: Array, path: int, step: int, shifts: Array, trace: Array
+        self, state: Array, path: int, step: int, shifts: kernels.Shifts, trace: Array
     ) -> None:
         """Step by step, with a gradient that is the user's own code."""
         take = STAGES[self.method]
         normals = np.empty((N_NORMALS, state.shape[1]))
-        for j in range(len(shifts)):
+        for j, common in enumerate(shifts.common):
             group, number = divmod(step + j, N_NORMALS)
             if j == 0 or number == 0:
                 kernels.fill_normals(path, group, self.key, normals)
             gradient = self._gradient(path, step + j)
             angles = self.noise_scale * normals[number]
-            take(state, self.ds, angles, shifts[j], gradient)
+            displace(state, shifts, j, 0)
+            take(state, self.ds, angles, common, gradient)
+            displace(state, shifts, j, 1)
             if len(trace):
                 trace[j] = state
 
@@ -154,12 +163,15 @@ class Integrator:
 
         return gradient
 
-    def _complain(self, state: Array, path: int, step: int, n_steps: int) -> None:
+    def _complain(
+        self, state: Array, path: int, step: int, shifts: kernels.Shifts
+    ) -> None:
         """Raise with the place where one path was last finite."""
+        n_steps = len(shifts.common)
         state, trace = state.copy(), np.empty((n_steps, self.n_state, 1))
         trace[...] = np.nan
         start = state[None].copy()
-        self._take(state, path, step, n_steps, trace)
+        self._take(state, path, step, shifts, trace)
         visited = np.concatenate([start, trace])[:, :, 0]
         last = int(np.argmin(np.isfinite(visited).all(axis=1))) - 1
         place = visited[last, :2]
@@ -172,6 +184,13 @@ class Integrator:
 def translate(state: Array, ds: float, shift: Array) -> None:
     """ξ ← ξ + ds τ - (displacement of γ)."""
     state[:2] += ds * state[2:4] - shift[:, None]
+
+
+def displace(state: Array, shifts: kernels.Shifts, j: int, half: int) -> None:
+    """ξ less what nozzles add to γ over one half of step j of every path."""
+    if shifts.weights.size:
+        first, second = shifts.own[j, half].T[:, :, None]
+        state[:2] -= first * shifts.weights[0] + second * shifts.weights[1]
 
 
 def angular_drift(state: Array, forces: Array) -> Array:

@@ -14,8 +14,8 @@ import numpy as np
 from fpsolve._kernels import paths as kernels
 from fpsolve._support.arrays import Array
 from fpsolve.model.smooth import SmoothLayDownModel
-from fpsolve.paths.forcing import compiled_potential, half_step_shifts
-from fpsolve.paths.integrators import Integrator, translate
+from fpsolve.paths.forcing import compiled_potential
+from fpsolve.paths.integrators import Integrator, displace, translate
 from fpsolve.paths.smooth_step import smooth_step
 
 __all__ = ["SmoothIntegrator"]
@@ -42,10 +42,8 @@ class SmoothIntegrator(Integrator):
         return smooth_step(model.relaxation_length, model.noise, self.ds)
 
     def _take(
-        self, state: Array, path: int, step: int, n_steps: int, trace: Array
+        self, state: Array, path: int, step: int, shifts: kernels.Shifts, trace: Array
     ) -> None:
-        curve = self.model.curve
-        shifts = half_step_shifts(curve, self.s_start, self.ds, step, n_steps)
         potential = compiled_potential(self.model.potential)
         if potential is None:
             self._take_staged(state, path, step, shifts, trace)
@@ -55,20 +53,22 @@ class SmoothIntegrator(Integrator):
         )
 
     def _take_staged(
-        self, state: Array, path: int, step: int, shifts: Array, trace: Array
+        self, state: Array, path: int, step: int, shifts: kernels.Shifts, trace: Array
     ) -> None:
         """Step by step, with a gradient that is the user's own code."""
         law, n_steps = self.step, kernels.N_STEPS
         numbers = np.empty((kernels.N_NUMBERS, n_steps, state.shape[1]))
-        for j in range(len(shifts)):
+        for j, common in enumerate(shifts.common):
             group, number = divmod(step + j, n_steps)
             if j == 0 or number == 0:
                 self._draw(path, group, numbers)
-            translate(state, 0.5 * self.ds, shifts[j, 0])
+            displace(state, shifts, j, 0)
+            translate(state, 0.5 * self.ds, common[0])
             forces = self._gradient(path, step + j)(state)
             # Three numbers after the other for each step of the four.
             own = numbers.reshape(n_steps, kernels.N_NUMBERS, -1)[number]
-            kernels.turn_paths(law, own, forces, shifts[j, 1], state)
+            kernels.turn_paths(law, own, forces, common[1], state)
+            displace(state, shifts, j, 1)
             if len(trace):
                 trace[j] = state
 

@@ -11,7 +11,13 @@ from fpsolve._support.progress import ProgressCallback, reporting
 from fpsolve.evolution.call import recorded
 from fpsolve.model.fibre import FibreModel
 from fpsolve.model.process import Process
-from fpsolve.web.laying import PIXEL_BYTES, lay_elsewhere, lay_here, n_workers_for
+from fpsolve.web.laying import (
+    PIXEL_BYTES,
+    lay_elsewhere,
+    lay_here,
+    n_workers_for,
+    total,
+)
 from fpsolve.web.order import order_of, pixels_of
 from fpsolve.web.web import Web
 from fpsolve.web.window import Window
@@ -118,7 +124,7 @@ def lay_web(
             laid = lay_here(plan, n_workers_for(plan.n_fibres, n_bytes, left), told)
         else:
             laid = lay_elsewhere(plan, client, told)
-    return order.web(laid, pixels_of(laid.counts, order))
+    return order.web(total(laid.counts), laid, pixels_of(laid.counts, order))
 
 
 class Told:

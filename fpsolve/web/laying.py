@@ -21,12 +21,16 @@ __all__ = [
     "PIXEL_BYTES",
     "Counts",
     "Laid",
+    "Laying",
+    "check_client",
+    "groups_of",
     "image_shape",
     "lay_elsewhere",
     "lay_here",
     "lay_on",
     "n_workers_for",
     "total",
+    "touched",
 ]
 
 Counts = NDArray[np.int64]
@@ -35,8 +39,6 @@ Counts = NDArray[np.int64]
 _PER_WORKER = 16 * LANES
 # Steps of a leg for which a second thread is worth its wait.
 _STEPS_PER_THREAD = 2**15
-# Where every nozzle has its own phase, steps are taken one by one by all of these.
-_PHASED = 64 * LANES
 # Fibres of one piece of work elsewhere.
 _ELSEWHERE = 16 * LANES
 # Bytes of a pixel: what is counted, as integers.
@@ -55,12 +57,15 @@ class Laid(NamedTuple):
         Counts outside of the window; a Python integer, which has no end.
     beyond : int
         Pieces that lie beyond the reach for which there are margins.
+    column : int
+        Their first one.
     """
 
     counts: Counts
     row: int
     outside: int
     beyond: int
+    column: int = 0
 
 
 class Laying:
@@ -82,7 +87,7 @@ class Laying:
         self.corners = np.empty((2, n))
         n_workers, self.images = len(images), images
         self.tallies: Counts = np.zeros((n_workers, kernels.N_TALLIES), np.int64)
-        self.group = _PER_WORKER * n_workers if self.motion.in_phase else _PHASED
+        self.group = _PER_WORKER * n_workers
         n_traced = min(self.group, n)
         self.trace = np.empty((LEG, self.motion.integrator.n_state, n_traced))
 
@@ -119,7 +124,8 @@ class Laying:
         for image in self.images[1:]:
             counts += image
         units, rest, beyond = self.tallies.sum(axis=0).tolist()
-        return Laid(counts, 0, units * kernels.UNIT + rest, beyond)
+        outside = units * kernels.UNIT + rest
+        return Laid(counts, 0, outside, beyond, self.raster.first_column)
 
     def _trace_of(self, n: int) -> Array:
         return np.empty((*self.trace.shape[:2], n))
@@ -170,7 +176,11 @@ def lay_some(plan: Plan, first: int, n: int) -> Laid:
     images = np.zeros((1, *image_shape(plan)), np.int64)
     laying = Laying(plan, first, n, images)
     laying.complete()
-    laid = laying.result()
+    return touched(laying.result())
+
+
+def touched(laid: Laid) -> Laid:
+    """With those rows alone in which something lies."""
     rows = np.flatnonzero(laid.counts[:, :, 0].any(axis=1))
     low, high = (0, 0) if not rows.size else (int(rows[0]), int(rows[-1]) + 1)
     return laid._replace(counts=laid.counts[low:high].copy(), row=low)
@@ -180,11 +190,7 @@ def lay_elsewhere(
     plan: Plan, client: Any, report: Callable[[int, float], None]
 ) -> Laid:
     """Lay all fibres on a client, group by group; sums of integers have no order."""
-    if not hasattr(client, "submit"):
-        raise TypeError(
-            f"`client` must have a method submit(f, *args), got {client!r}; pass a "
-            "dask.distributed client or an executor."
-        )
+    check_client(client)
     futures = deque(
         (n, client.submit(lay_some, plan, first, n))
         for first, n in groups_of(plan.n_fibres)
@@ -198,6 +204,15 @@ def lay_elsewhere(
         outside, beyond = outside + part.outside, beyond + part.beyond
         report(n * schedule.n_steps, schedule.end)
     return Laid(counts, 0, outside, beyond)
+
+
+def check_client(client: Any) -> None:
+    """Raise TypeError unless it takes work."""
+    if not hasattr(client, "submit"):
+        raise TypeError(
+            f"`client` must have a method submit(f, *args), got {client!r}; pass a "
+            "dask.distributed client or an executor."
+        )
 
 
 def groups_of(n_fibres: int) -> list[tuple[int, int]]:

@@ -24,7 +24,7 @@ from fpsolve.web.margins import Margins
 from fpsolve.web.plan import Plan, ensemble_of
 from fpsolve.web.window import Window
 
-__all__ = ["WEB"]
+__all__ = ["WEB", "pixel_labels"]
 
 _PIXELS = ("cross", "machine")
 
@@ -82,23 +82,14 @@ class _Pixels(Part):
     needed = ("length_density", "orientation_11", "orientation_12", *_PIXELS)
 
     def write(self, result: Any) -> Stored:
-        unit = result.unit or "throwing ranges"
-        words = {
-            "length_density": f"laid length of fibre per area in 1/({unit})",
-            "orientation_11": "mean of τ₁τ₁, 1 along the belt",
-            "orientation_12": "mean of τ₁τ₂, 2 across the belt",
-        }
         stored: Stored = {
-            name: (_PIXELS, getattr(result, name), labels(text))
-            for name, text in words.items()
+            name: (_PIXELS, getattr(result, name), about)
+            for name, about in pixel_labels(result).items()
         }
         where = {"cross": "across the belt", "machine": "along the belt"}
         for name, text in where.items():
-            about = labels(f"{text} in {unit}")
+            about = labels(f"{text} in {result.unit or 'throwing ranges'}")
             stored[name] = (name, getattr(result, name), about)
-        if result.titer is not None:
-            about = {**labels("mass per area"), "units": "g m-2"}
-            stored["mass_density"] = (_PIXELS, result.mass_density, about)
         return stored
 
     def read(self, source: Source) -> dict[str, Any]:
@@ -109,6 +100,19 @@ class _Pixels(Part):
             check_counts("window", shape, dataset[name].shape, f"`{name}`")
             fields[name] = dataset[name].values
         return fields
+
+
+def pixel_labels(result: Any) -> dict[str, dict[str, str]]:
+    """Labels of what is known of every pixel, by the name of its variable."""
+    unit = result.unit or "throwing ranges"
+    found = {
+        "length_density": labels(f"laid length of fibre per area in 1/({unit})"),
+        "orientation_11": labels("mean of τ₁τ₁, 1 along the belt"),
+        "orientation_12": labels("mean of τ₁τ₂, 2 across the belt"),
+    }
+    if result.titer is not None:
+        found["mass_density"] = {**labels("mass per area"), "units": "g m-2"}
+    return found
 
 
 def _fibres(source: Source, name: str) -> Any:

@@ -8,10 +8,9 @@ from functools import cached_property
 import numpy as np
 
 from fpsolve._kernels.paths import N_STATE
-from fpsolve._kernels.threads import threads_worth_their_wait
 from fpsolve._support.arrays import Array
 from fpsolve.paths.ensemble import Ensemble
-from fpsolve.paths.forcing import half_step_shifts
+from fpsolve.paths.forcing import OwnMotion
 from fpsolve.paths.integrators import Integrator
 from fpsolve.web.nozzles import nozzle_parts
 
@@ -65,34 +64,12 @@ class Motion:
         self, state: Array, first: int, step: int, n_steps: int, trace: Array | None
     ) -> None:
         """Advance the fibres from number `first` on; as `Integrator.advance`."""
-        if self.in_phase:
-            path = self.first_path + first
-            self.integrator.advance(state, path, step, n_steps, trace)
-            return
-        own, path = self._own_shifts(step, n_steps), self.first_path + first
-        weights = self.weights[:, first : first + state.shape[1]]
-        # A single step of all fibres is no work for which threads may wait.
-        with threads_worth_their_wait(state.shape[1]):
-            self._advance_one_by_one(state, path, step, own, weights, trace)
-
-    def _advance_one_by_one(
-        self,
-        state: Array,
-        path: int,
-        step: int,
-        own: Array,
-        weights: Array,
-        trace: Array | None,
-    ) -> None:
-        for j in range(len(own)):
-            # What a nozzle moves otherwise than the curve says is added to both halves
-            # of the step, before and behind the force.
-            state[:2] -= combined(own[j, 0], weights)
-            here = None if trace is None else trace[j : j + 1]
-            self.integrator.advance(state, path, step + j, 1, here)
-            state[:2] -= combined(own[j, 1], weights)
-            if trace is not None:
-                trace[j, :2] = state[:2]
+        own = None
+        if not self.in_phase:
+            weights = self.weights[:, first : first + state.shape[1]]
+            own = OwnMotion(nozzle_parts(self.ensemble.model.curve), weights)
+        path = self.first_path + first
+        self.integrator.advance(state, path, step, n_steps, trace, own)
 
     def curve(self, step: int, n_steps: int) -> Array:
         """γ after every step, and what (cos φ - 1, sin φ) add; shape (n_steps, 6)."""
@@ -112,15 +89,6 @@ class Motion:
         weights = self.weights[:, first : first + state.shape[1]]
         moved = combined(row[2:].reshape(2, 2).T, weights)
         return np.asarray(state[:2] + row[:2, None] + moved)
-
-    def _own_shifts(self, step: int, n_steps: int) -> Array:
-        """Displacements of both parts over the halves; shape (n_steps, 2, 2, 2)."""
-        schedule, curve = self.ensemble.schedule, self.ensemble.model.curve
-        parts = [
-            half_step_shifts(part, schedule.start, schedule.ds, step, n_steps)
-            for part in nozzle_parts(curve)
-        ]
-        return np.stack(parts, axis=-1)
 
 
 def combined(parts: Array, weights: Array) -> Array:

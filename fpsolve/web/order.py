@@ -14,7 +14,7 @@ from fpsolve.errors import FpsolveError
 from fpsolve.model.fibre import check_fibre_model
 from fpsolve.model.process import Process
 from fpsolve.paths.randomness import seed_number
-from fpsolve.web.laying import Counts, Laid, total
+from fpsolve.web.laying import Counts, Laid
 from fpsolve.web.plan import Plan, plan_of
 from fpsolve.web.web import Web
 from fpsolve.web.window import Window
@@ -50,11 +50,14 @@ class Order:
         """The throwing range in metres, or 1."""
         return 1.0 if self.process is None else self.process.length
 
-    def web(self, laid: Laid, pixels: tuple[Array, Array, Array]) -> Web:
-        """The web of what was laid; its pixels as `pixels_of` makes them."""
+    def web(self, inside: int, laid: Laid, pixels: tuple[Array, Array, Array]) -> Web:
+        """The web of what was laid, of which so many counts lie inside.
+
+        Its pixels are those that `pixels_of` makes.
+        """
         plan, ds = self.plan, self.plan.ensemble.schedule.ds
         pieces = plan.n_fibres * plan.n_counted
-        check_conserved(total(laid.counts) + laid.outside, pieces)
+        check_conserved(inside + laid.outside, pieces)
         unseen = _UNSEEN * plan.margins.relaxation / ds
         length, first, mixed = pixels
         return Web(
@@ -88,7 +91,7 @@ def order_of(
     process = model if isinstance(model, Process) else None
     model = model.model if isinstance(model, Process) else model
     check_fibre_model(model)
-    number, grams = seed_number(seed, None), checked_titer(titer, process)
+    number, grams = checked_seed(seed), checked_titer(titer, process)
     unit = 1.0 if process is None else process.length
     window = Window.of(width, length, pixel)
     if periodic is True and isinstance(positions, str) and positions == "regular":
@@ -131,6 +134,16 @@ def check_conserved(counted: int, pieces: int) -> None:
             f"{counted / kernels.UNIT:.6g}; a pixel holds more pieces of fibre than "
             "its integer: use smaller pixels."
         )
+
+
+def checked_seed(seed: Any) -> int:
+    """The seed as one number; TypeError if there is none."""
+    if seed is None:
+        raise TypeError(
+            "`seed` must be given, got None; pass seed=1, which repeats the web, or "
+            "another number for another web."
+        )
+    return seed_number(seed, None)
 
 
 def checked_titer(titer: Any, process: Process | None) -> float | None:

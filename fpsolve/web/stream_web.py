@@ -4,34 +4,38 @@ from __future__ import annotations
 
 import inspect
 import os
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fpsolve._support.arrays import Array
 from fpsolve._support.checks import check_path, check_positive
 from fpsolve._support.files import check_room
 from fpsolve._support.netcdf import check_engine, write_dataset
 from fpsolve._support.progress import ProgressCallback, reporting
 from fpsolve._support.provenance import Stopwatch
+from fpsolve._support.streaming import Streamed
 from fpsolve.evolution.call import Call
 from fpsolve.model.fibre import FibreModel
 from fpsolve.model.process import Process
+from fpsolve.web.counted import CountedFile, PixelBlocks
 from fpsolve.web.lay_web import Told, bytes_of, lay_web
-from fpsolve.web.laying import Counts, image_shape, lay_on
-from fpsolve.web.order import Order, order_of, pixels_of
-from fpsolve.web.window import Window
+from fpsolve.web.laying import Laid, check_client
+from fpsolve.web.layout import pixel_labels
+from fpsolve.web.order import Order, order_of
+from fpsolve.web.stretches import lay_in_stretches
+from fpsolve.web.web import Web
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 __all__ = ["stream_web"]
 
-_PIXELS = ("length_density", "orientation_11", "orientation_12")
-# Pixels that are made of counts at once.
-_AT_ONCE = 2**20
+_DIMENSIONS = ("cross", "machine")
 
 
 def stream_web(
@@ -39,6 +43,7 @@ def stream_web(
     path: str | os.PathLike[str],
     *,
     tile: float | None = None,
+    client: Any = None,
     progress: bool | ProgressCallback = False,
     **options: Any,
 ) -> Path:
@@ -48,10 +53,12 @@ def stream_web(
     write, in chunks of the whole width and a tile of the length. `fpsolve.load` reads
     it where it fits into memory, xarray.open_zarr tile by tile.
 
-    While fibres are laid their counts lie in a file beside the store, 48 bytes for a
-    pixel, of which the system keeps in memory what is being laid: the stretch of the
-    belt below the nozzles. Where the titer is known, the mass per area takes eight
-    bytes of memory for a pixel. One thread counts, the steps are taken by all.
+    Fibres are laid over one tile after the other. In memory are a tile and the stretch
+    of the belt that they reach, the places of the fibres, and with a client what its
+    workers give back of a tile. Counts lie in a file beside the store, 24 bytes for a
+    pixel, as long as they are needed. Here one thread counts, and the steps are taken
+    by all; elsewhere every worker lays some of the fibres over a tile, and hands on
+    where they end.
 
     Parameters
     ----------
@@ -61,10 +68,12 @@ def stream_web(
     tile : float, optional
         Length of a tile along the belt, a multiple of the pixel or rounded to one; by
         default the width.
+    client : optional
+        Where to lay, as for `lay_web`.
     progress : bool or callable
         Show a bar, or call with (fibre-steps done, fibre-steps in all, s).
     **options
-        As for `lay_web`, but for `client` and `memory_limit`.
+        As for `lay_web`, but for `memory_limit`.
 
     Returns
     -------
@@ -86,24 +95,30 @@ def stream_web(
     check_engine("zarr")
     watch = Stopwatch()
     order, call = order_of(model, **options), call_of(model, options)
-    along = order.plan.window.width * order.unit if tile is None else tile
-    columns = max(round(check_positive("tile", along) / order.unit
-                        / order.plan.window.pixel), 1)  # fmt: skip
-    with mapped(path, order.plan.window, image_shape(order.plan)) as (counts, pixels):
+    plan = order.plan
+    tile = plan.window.width if tile is None else check_tile(tile, order)
+    if client is not None:
+        check_client(client)
+    with counting(path, order) as counted:
         with reporting(progress) as report:
-            n_steps = order.plan.ensemble.schedule.n_steps
-            told = Told(report, order.plan.n_fibres * n_steps)
-            laid = lay_on(order.plan, counts[None], told)
-        fill(pixels, laid.counts, order)
-        length, first, mixed = pixels
-        web = order.web(laid, (length, first, mixed))
+            told = Told(report, plan.n_fibres * plan.ensemble.schedule.n_steps)
+            outside, beyond = 0, 0
+            for laid in lay_in_stretches(plan, tile, client, told):
+                counted.add(laid)
+                outside, beyond = outside + laid.outside, beyond + laid.beyond
+        # One number in the place of all, which takes no memory.
+        nothing = np.broadcast_to(np.float64(0.0), plan.window.shape)
+        laid = Laid(np.zeros((0, 0, 0), np.int64), 0, outside, beyond)
+        web = order.web(counted.inside, laid, (nothing, nothing, nothing))
         web = replace(web, call=call, provenance=watch.provenance())
-        dataset = web.to_xarray()
-        n_rows, n_columns = web.length_density.shape
-        for name in _PIXELS:
-            chunks = (n_rows, min(columns, n_columns))
-            dataset[name].encoding["chunks"] = chunks
-        return write_dataset(dataset, path, "zarr")
+        columns = max(round(tile / plan.window.pixel), 1)
+        streamed = list(variables(web, counted, columns))
+        return write_dataset(without_pixels(web), path, "zarr", streamed)
+
+
+def check_tile(tile: Any, order: Order) -> float:
+    """The length of a tile in throwing ranges; ValueError unless it is positive."""
+    return check_positive("tile", tile) / order.unit
 
 
 def call_of(model: Any, options: Any) -> Call:
@@ -114,26 +129,28 @@ def call_of(model: Any, options: Any) -> Call:
 
 
 @contextmanager
-def mapped(
-    path: Path, window: Window, shape: tuple[int, ...]
-) -> Iterator[tuple[Counts, list[Array]]]:
-    """Counts and pixels in files that are there as long as they are needed."""
+def counting(path: Path, order: Order) -> Iterator[CountedFile]:
+    """A file of counts that is there as long as it is needed."""
     with TemporaryDirectory(dir=path.parent, prefix=f".{path.name}-") as folder:
         place = Path(folder)
-        check_room(path, 3 * bytes_of(window), place)
-        counts: Any = np.memmap(place / "counts", np.int64, "w+", shape=shape)
-        pixels = [
-            np.memmap(place / name, np.float64, "w+", shape=shape[:2])
-            for name in _PIXELS
-        ]
-        yield np.asarray(counts), [np.asarray(one) for one in pixels]
+        # The counts, and as much or a third more for the store.
+        check_room(path, 3 * bytes_of(order.plan.window), place)
+        yield CountedFile(place / "counts", order)
 
 
-def fill(pixels: list[Array], counts: Counts, order: Order) -> None:
-    """Make the pixels of the counts, some rows at a time."""
-    n_rows, n_columns = counts.shape[:2]
-    step = max(_AT_ONCE // n_columns, 1)
-    for start in range(0, n_rows, step):
-        rows = slice(start, start + step)
-        for target, values in zip(pixels, pixels_of(counts[rows], order), strict=True):
-            target[rows] = values
+def variables(web: Web, counted: CountedFile, columns: int) -> Iterable[Streamed]:
+    """What is known of every pixel, in tiles of so many columns."""
+    n_rows, n_columns = web.length_density.shape
+    chunks = (n_rows, min(columns, n_columns))
+    for name, about in pixel_labels(web).items():
+        blocks = PixelBlocks(counted, name, chunks[1])
+        yield Streamed(name, _DIMENSIONS, (n_rows, n_columns), np.dtype(np.float64),
+                       blocks, about, chunks, blocks.tiles())  # fmt: skip
+
+
+def without_pixels(web: Web) -> xr.Dataset:
+    """The dataset of a web but for its pixels."""
+    # Without the titer there is no mass, which would be an array of its own.
+    dataset = replace(web, titer=None).to_xarray()
+    dataset = dataset.drop_vars([*pixel_labels(replace(web, titer=None))])
+    return dataset if web.titer is None else dataset.assign_attrs(titer=web.titer)

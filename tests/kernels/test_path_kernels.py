@@ -41,6 +41,18 @@ def random_smooth_state(n):
     return np.stack([*random_state(n), np.random.default_rng(6).normal(size=n)])
 
 
+def in_phase(shifts):
+    """Of nozzles that all move as the curve."""
+    return kernels.Shifts(shifts, np.zeros((0, 2, 2, 2)), np.zeros((2, 0)))
+
+
+def own_phases(n_steps, n):
+    """Of nozzles that add two motions to the curve, each weighted in its own way."""
+    rng = np.random.default_rng(9)
+    common, own = rng.normal(size=(n_steps, 2, 2)), rng.normal(size=(n_steps, 2, 2, 2))
+    return kernels.Shifts(0.1 * common, 0.1 * own, rng.normal(size=(2, n)))
+
+
 def work_array():
     """A work array with a state, normal numbers and forces in its rows."""
     rng = np.random.default_rng(5)
@@ -52,8 +64,8 @@ def work_array():
 def cases():
     """Name of a kernel: list of argument tuples."""
     w, n = work_array(), 3
-    state, shifts = random_state(n), np.full((5, 2, 2), 0.01)
-    step = (0.2, *QUADRATIC, shifts[0], w)
+    state, together = random_state(n), in_phase(np.full((5, 2, 2), 0.01))
+    step = (0.2, *QUADRATIC, together.common[0], w)
     return {
         "philox_round": [(1, 2, 3, 4, *KEY)],
         "philox": [(1, 2, 3, 4, *KEY), (2**32 - 1, 0, 2**31, 7, *KEY)],
@@ -64,6 +76,8 @@ def cases():
         "translate_block": [(0.1, 0.02, -0.03, w)],
         "force_block": [(*potential, w) for potential in POTENTIALS],
         "limit_force": [(0.1, w), (40.0, w)],
+        "load_weights": [(np.arange(2.0 * n).reshape(2, n), 0, n, w)],
+        "displace_block": [(np.array([[0.1, -0.2], [0.3, 0.4]]), w)],
         "angle_block": [(kernels.NORMAL + kernels.LANES, 2.5, w)],
         "kick_block": [(0.1, w)],
         "rotate_block": [(w,)],
@@ -79,16 +93,17 @@ def cases():
             )
             for potential in POTENTIALS
             for method in (kernels.SPLITTING, kernels.EULER_MARUYAMA, kernels.HEUN)
+            for shifts in (together, own_phases(5, n))
         ],
         "fill_normals": [(5, 3, KEY, np.zeros((4, n)))],
         "kick_paths": [(0.1, np.array([1.0, -9.0, 0.0]), np.ones((2, n)), state)],
         "rotate_paths": [(np.array([1.0, -9.0, 40.0]), state)],
         "sum_powers": [(random_state(70), np.zeros((2, 19)))],
-        **smooth_cases(w, n, shifts),
+        **smooth_cases(w, n, together),
     }  # fmt: skip
 
 
-def smooth_cases(w, n, shifts):
+def smooth_cases(w, n, together):
     """Those of the smooth model."""
     state, rng = random_smooth_state(n), np.random.default_rng(5)
     numbers, forces = rng.normal(size=(3, n)), rng.normal(size=(2, n))
@@ -101,8 +116,9 @@ def smooth_cases(w, n, shifts):
         "advance_smooth_paths": [
             (7, 2, KEY, LAW, potential, shifts, np.zeros((0, 6, 0)), state)
             for potential in POTENTIALS
+            for shifts in (together, own_phases(5, n))
         ],
-        "turn_paths": [(LAW, numbers, forces, shifts[0, 1], state)],
+        "turn_paths": [(LAW, numbers, forces, together.common[0, 1], state)],
     }
 
 
@@ -146,7 +162,7 @@ def test_compiled_kernels_of_the_sampler_equal_their_source(name):
 @pytest.mark.parametrize("potential", POTENTIALS)
 @pytest.mark.parametrize("method", [0, 1, 2])
 def test_paths_do_not_depend_on_the_number_of_threads(potential, method, on_threads):
-    shifts = np.full((6, 2, 2), 0.01)
+    shifts = in_phase(np.full((6, 2, 2), 0.01))
 
     def run():
         state = random_state(5000)
@@ -161,7 +177,7 @@ def test_paths_do_not_depend_on_the_number_of_threads(potential, method, on_thre
 @pytest.mark.parametrize("method", [0, 1, 2])
 @pytest.mark.parametrize("value", [np.nan, np.inf])
 def test_a_position_that_is_not_finite_stays_so_and_spoils_no_other_path(value, method):
-    shifts = np.zeros((4, 2, 2))
+    shifts = in_phase(np.zeros((4, 2, 2)))
     good, spoiled = random_state(70), random_state(70)
     spoiled[0, 13] = value
     for state in (good, spoiled):
@@ -177,12 +193,44 @@ def test_the_trace_holds_the_state_after_every_step():
     shifts = np.full((9, 2, 2), 0.01)
     whole, trace = random_state(70), np.zeros((9, 5, 70))
     arguments = (kernels.Noise(3, 5, KEY, 0.3), 0.1, QUADRATIC)
-    kernels.advance_paths(*arguments, shifts, 0, trace, whole)
+    kernels.advance_paths(*arguments, in_phase(shifts), 0, trace, whole)
     for n_steps in range(1, 10):
         state = random_state(70)
-        kernels.advance_paths(*arguments, shifts[:n_steps], 0, NO_TRACE, state)
+        some = in_phase(shifts[:n_steps])
+        kernels.advance_paths(*arguments, some, 0, NO_TRACE, state)
         assert np.array_equal(trace[n_steps - 1], state)
     assert np.array_equal(trace[-1], whole)
+
+
+def advanced(state, step, shifts):
+    """States after so many steps from one on, by the kernel of the model."""
+    state, trace = state.copy(), np.zeros((len(shifts.common), *state.shape))
+    if len(state) == kernels.N_STATE:
+        noise = kernels.Noise(3, step, KEY, 0.3)
+        kernels.advance_paths(noise, 0.1, QUADRATIC, shifts, 0, trace, state)
+    else:
+        kernels.advance_smooth_paths(3, step, KEY, LAW, QUADRATIC, shifts, trace, state)
+    return trace
+
+
+@pytest.mark.parametrize("start", [random_state(70), random_smooth_state(70)])
+def test_a_nozzle_of_its_own_phase_moves_before_and_behind_every_step(start):
+    shifts, state = own_phases(9, 70), start.copy()
+    trace = advanced(start, 5, shifts)
+    for j in range(9):
+        before, behind = (part @ shifts.weights for part in shifts.own[j])
+        state[:2] -= before
+        state = advanced(state, 5 + j, in_phase(shifts.common[j : j + 1]))[0]
+        state[:2] -= behind
+        # Sums of two products, rounded in another order.
+        np.testing.assert_allclose(trace[j], state, rtol=0, atol=1e-12)
+
+
+def test_paths_whose_nozzles_have_the_weight_zero_are_those_in_phase():
+    shifts = own_phases(9, 70)
+    still = shifts._replace(weights=np.zeros((2, 70)))
+    in_step = advanced(random_state(70), 5, in_phase(shifts.common))
+    assert np.array_equal(advanced(random_state(70), 5, still), in_step)
 
 
 @pytest.mark.parametrize(

@@ -88,7 +88,7 @@ def test_a_bad_argument_is_refused_with_a_remedy(name):
 
 WRONG_KINDS = {
     "no model": ({"model": 3}, "`model` must be a LayDownModel"),
-    "no seed": ({"seed": None}, "exactly one of `seed`"),
+    "no seed": ({"seed": None}, "`seed` must be given, got None; pass seed=1"),
     "text as width": ({"width": "2"}, "`width` must be"),
     "periodic as text": ({"periodic": "no"}, "`periodic` must be True or False"),
     "client that takes no work": ({"client": "tcp://1"}, "`client` must have a method"),

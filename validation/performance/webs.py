@@ -76,8 +76,28 @@ def seconds_of_parts(laying: Laying, plain: Any) -> tuple[float, float, float]:
     return path, both, length
 
 
+def measure_phases(quick: bool) -> None:
+    """Fibres of nozzles that turn, each in its own phase and all in one."""
+    nozzle = fp.RotatingNozzle(0.1, radius=2.0, angular_speed=0.5)
+    model = fp.LayDownModel(fp.QuadraticPotential(), 1.0, nozzle)
+    sizes = {"width": 20.0 if quick else 100.0, "length": 20.0, "pixel": 0.1}
+    for phases in ("independent", "in phase"):
+        for spacing in (0.1, 0.02):
+            options = {**sizes, "spacing": spacing, "phases": phases, "seed": 1}
+            plan = order_of(model, **options).plan
+            began = time.process_time()
+            fp.lay_web(model, **options)
+            seconds = time.process_time() - began
+            rate = plan.n_fibres * plan.ensemble.schedule.n_steps / seconds
+            print(
+                f"rotating nozzles, {phases}: {plan.n_fibres} fibres, "
+                f"{1e-6 * rate:.1f} million steps a second"
+            )
+            assert quick or rate > REQUIRED, (rate, REQUIRED)
+
+
 def main() -> None:
-    """Measure both models, and a web as a whole."""
+    """Measure both models, a web as a whole, and nozzles that turn."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--quick", action="store_true")
     quick = parser.parse_args().quick
@@ -109,6 +129,7 @@ def main() -> None:
             f"seconds: {1e-6 * rate:.1f} million a second"
         )
         assert quick or rate > REQUIRED, (rate, REQUIRED)
+    measure_phases(quick)
 
 
 if __name__ == "__main__":
