@@ -102,7 +102,15 @@ def cases() -> Iterator[Case]:
     )  # fmt: skip
     yield "strips, amplitude", striped, lambda web: strips(web, 1.0).amplitude, 0.05
     yield "strips, period", striped, lambda web: strips(web, 1.0).period, 7.3
+    yield "strips, share", striped, lambda web: strips(web, 1.0).share, strip_share()
     yield "spectrum ring 5, noise", noise, ring, SPREAD**2
+
+
+def strip_share() -> float:
+    """Power of the planted wave over it and the noise of a profile of 192 columns."""
+    place = np.arange(SHAPE[0]) + 0.5
+    wave = float(np.var(0.05 * np.cos(2 * np.pi * place / 7.3)))
+    return wave / (wave + 0.25 / 3 / SHAPE[1] * (1 - 1 / SHAPE[0]))
 
 
 def variation(zone: float) -> Callable[[Any], Estimate]:

@@ -162,9 +162,10 @@ def add_scale_bar(axes: Axes, image: WebImage, distance: float = 0.03) -> float:
     )  # fmt: skip
     # The bar lies outside, and shall not move the edges.
     axes.set(xlim=image.extent[:2], ylim=image.extent[2:])
+    # It ends with the bar: a label that is longer would leave a narrow picture.
     axes.annotate(
         f"{bar:g} {unit}" if unit else f"length {bar:g}",
-        (length - bar / 2, below), (0, -4), textcoords="offset points",
-        ha="center", va="top", annotation_clip=False,
+        (length, below), (0, -4), textcoords="offset points",
+        ha="right", va="top", annotation_clip=False,
     )  # fmt: skip
     return bar

@@ -113,18 +113,22 @@ def test_what_is_printed_are_the_measures_of_the_web(fpsolve, config, tmp_path):
 
 def test_figures_and_exports_are_written_as_asked(fpsolve, config, tmp_path, undrawn):
     tifffile = pytest.importorskip("tifffile")
-    exports = ("--export", "png", "--export", "tiff", "--export", "csv")
+    asked = ("png", "tiff", "csv", "vtp")
+    exports = [word for name in asked for word in ("--export", name)]
     done(fpsolve("web", config, "--out", "out", *exports))
     left = files(tmp_path / "out")
-    assert {"few.nc", "few.toml", "few.png", "few.tiff", "few.csv"} <= set(left)
+    assert {"few.nc", "few.toml", *(f"few.{name}" for name in asked)} <= set(left)
     assert {"few-light.png", "few-variation.png"} <= set(left)
     web = fp.load(tmp_path / "out" / "few.nc")
     image = tifffile.imread(tmp_path / "out" / "few.tiff")
     assert image.dtype == np.uint16
     one = web.mass_density.max() / 65535
     np.testing.assert_allclose(image * one, web.mass_density, rtol=0, atol=0.51 * one)
+    for name, write in (("csv", web.to_csv), ("vtp", web.to_vtp)):
+        again = write(tmp_path / f"again.{name}").read_bytes()
+        assert (tmp_path / "out" / f"few.{name}").read_bytes() == again
     used = load_config(tmp_path / "out" / "few.toml", WebConfig)
-    assert used.web.exports == ("png", "tiff", "csv")
+    assert used.web.exports == asked
 
 
 def test_options_of_the_model_make_a_web_without_units(fpsolve, tmp_path):

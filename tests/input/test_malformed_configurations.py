@@ -4,7 +4,7 @@ import pytest
 from command_line import files
 from malformed.cases import assert_said, parametrised
 from malformed.configurations import ABSURD, PATHS_FILES, RUN, RUN_FILES, written
-from malformed.webs import WEB_FILES
+from malformed.webs import ABSURD_WEBS, WEB_FILES
 from refusals import assert_one_line, everything
 
 from fpsolve.cli.config import PathsConfig, RunConfig, WebConfig, load_config
@@ -57,6 +57,19 @@ def test_wrong_paths_cost_one_line_and_no_file(case, fpsolve, tmp_path):
 @parametrised(WEB_FILES)
 def test_a_wrong_web_costs_one_line_and_no_file(case, fpsolve, tmp_path):
     refused(case, WebConfig, ["web"], fpsolve, tmp_path)
+
+
+@parametrised(ABSURD_WEBS)
+def test_a_web_that_never_fits_is_refused_before_anything_is_made(
+    case, fpsolve, tmp_path
+):
+    path = case.do(tmp_path)
+    with pytest.raises(MemoryLimitError) as caught:
+        load_config(path, WebConfig).build()
+    assert_said(str(caught.value), case)
+    before = files(tmp_path)
+    assert_one_line(fpsolve("web", path, "--out", "out"), case, 1)
+    assert files(tmp_path) == before
 
 
 def test_a_byte_order_mark_does_no_harm(tmp_path):

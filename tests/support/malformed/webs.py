@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from fpsolve.errors import MemoryLimitError
+
 from .cases import Case
 from .configurations import PATHS, PROCESS, RUN, added, changed, written
 
@@ -66,4 +68,9 @@ WEB_FILES = [
          "got none", r"section \[web\] must be given"),
     Case("a run in the file of a web", written(RUN),
          "its sections are those of `fpsolve run`", "give it to that command"),
+]  # fmt: skip
+
+ABSURD_WEBS = [
+    Case("a raster beyond memory", changed(b"pixel = 1e-3", b"pixel = 1e-9", WEB),
+         "are available", "use larger pixels", MemoryLimitError),
 ]  # fmt: skip
