@@ -66,7 +66,8 @@ def web_spectrum(
     −(L + ik·τ) u = 1 is solved, of which few polynomials suffice, and very short waves
     have Ŝ = (2π/|k|) [f(β + π/2) + f(β − π/2)] with the law f of the angle and β the
     direction of k, corrected by what it lacks at |k| σ = 300 or at |k| = 20 A².
-    Long waves end in Ŝ = O(|k|²).
+    Long waves end in Ŝ = k·C k, no fibre gets lost: C = 2 E ξ (−L)⁻¹ (ξ − E ξ), which
+    is used up to |k| = 1e-3 of what it forgets over, so that tiny k lose no digits.
 
     Parameters
     ----------
@@ -75,8 +76,8 @@ def web_spectrum(
     k1, k2 : array_like
         Wave numbers along and across the belt in radians per unit of ξ; they broadcast.
     tolerance : float
-        For every number, relative to the larger of itself and σ/(1 + |k| σ), σ the
-        smaller throwing range.
+        For every number, relative to itself; beyond |k| σ = 3 relative to the larger of
+        itself and σ/(1 + |k| σ), σ the smaller throwing range.
 
     Returns
     -------

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from fpsolve._support.arrays import Array
 from fpsolve.spectral.resolvent.basis import Basis
 from fpsolve.spectral.resolvent.generator import Generator
 from fpsolve.spectral.resolvent.ladder import Ladder
 from fpsolve.spectral.resolvent.limit import short_wave_limit
+from fpsolve.spectral.resolvent.long_limit import long_wave_limit, reach_of
 from fpsolve.spectral.resolvent.waves import along_long_waves, along_short_waves
 
 __all__ = ["fibre_spectrum"]
@@ -20,6 +22,8 @@ LONG = 3.0
 # correction that is measured there. Before it falls like |k|⁻², it has parts that fall
 # like e^{−c √(2|k|/A²)}, and oscillate.
 FAR, FAR_OF_NOISE = 300.0, 40.0
+# Of the tolerance the part that the form of the longest waves may take.
+END_SHARE = 0.5
 # Degrees count more than harmonics. Of both parities each has half of the states.
 FIRST_LONG, MOST_STATES = Basis(14, 7), 40_000
 # The first truncation for short waves: its degree, its harmonics, and how they grow
@@ -34,21 +38,22 @@ def fibre_spectrum(
     """Ŝ at (k1[i], k2[i]) and bounds of the errors.
 
     Ŝ is even in k, and in k2 by reflection: computed once for what differs. The error
-    is at most `tolerance` times the larger of Ŝ and σ/(1 + |k| σ), σ the smaller
-    throwing range.
+    is at most `tolerance` times Ŝ, of short waves |k| σ > `LONG` times the larger of Ŝ
+    and σ/(1 + |k| σ), σ the smaller throwing range.
     """
     points = np.stack([np.abs(k1), np.abs(k2)], axis=1)
     distinct, inverse = np.unique(points, axis=0, return_inverse=True)
-    values, errors = np.zeros(len(distinct)), np.zeros(len(distinct))
     sigma1, sigma2 = ladder.scales
     long = np.hypot(distinct[:, 0] * sigma1, distinct[:, 1] * sigma2) <= LONG
+    values, errors, near = longest_waves(ladder, distinct, tolerance)
+    others = np.flatnonzero(~long)
+    long &= ~near
     for one in np.unique(distinct[long, 0]):
         found = np.flatnonzero(long & (distinct[:, 0] == one))
         group = long_waves(ladder, float(one), distinct[found, 1], tolerance)
         values[found], errors[found] = group
     level = 0
     # From long to short, since what was fine enough for one is for the next.
-    others = np.flatnonzero(~long)
     for place in others[np.argsort(np.hypot(*distinct[others].T), kind="stable")]:
         wave = float(distinct[place, 0]), float(distinct[place, 1])
         values[place], errors[place], level = short_wave(
@@ -64,15 +69,28 @@ def floor_of(ladder: Ladder, k: Array) -> Array:
     return np.asarray(sigma / (1.0 + k * sigma))
 
 
+def longest_waves(
+    ladder: Ladder, k: Array, tolerance: float
+) -> tuple[Array, Array, NDArray[np.bool_]]:
+    """Ŝ and bounds of its errors by their end, and at which wave vectors it serves."""
+    values, errors = np.zeros(len(k)), np.zeros(len(k))
+    near = np.hypot(*k.T) <= reach_of(ladder)
+    # Of k = 0 nothing is asked: there Ŝ vanishes, and so does its error.
+    if near.any() and k[near].any():
+        end = long_wave_limit(ladder, FIRST_LONG, END_SHARE * tolerance, MOST_STATES)
+        values[near], errors[near] = end(*k[near].T)
+        near &= errors <= tolerance * values
+    return values, errors, near
+
+
 def long_waves(
     ladder: Ladder, k1: float, k2: Array, tolerance: float
 ) -> tuple[Array, Array]:
     """Ŝ at one k1 and many k2, all of one truncation."""
-    floor = floor_of(ladder, np.hypot(k1, k2))
     values, errors, _ = ladder.climb(
         FIRST_LONG,
         lambda generator: along_long_waves(generator, k1, k2.tolist()),
-        lambda found: tolerance * np.maximum(np.abs(found), floor),
+        lambda found: tolerance * np.abs(found),
         most=MOST_STATES,
     )
     return values, errors

@@ -61,6 +61,18 @@ class Generator:
         same = _identity(planes.shape[0])
         return self.basis.product(same, cosine), self.basis.product(same, sine)
 
+    @property
+    def positions(self) -> tuple[sparse.csr_array, sparse.csr_array]:
+        """Multiplication by ξ1 − c and by ξ2, up to the last degree."""
+        same = _identity(2 * self.basis.harmonics + 1)
+        first, second = (
+            self.basis.product(sigma * (lower + lower.T), same)
+            for sigma, lower in zip(
+                self.scales, map(self.basis.lowering, (0, 1)), strict=True
+            )
+        )
+        return first, second
+
     @cached_property
     def matrix(self) -> sparse.csr_array:
         """L; column and row are the states of the basis."""

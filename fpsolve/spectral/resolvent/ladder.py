@@ -19,6 +19,8 @@ __all__ = ["Ladder"]
 
 # From one truncation to the next; degrees are what lacks.
 DEGREES, HARMONICS = 1.4, 1.25
+# A √σ below which a fibre goes round several times before it forgets.
+LOW_NOISE = 1.0
 Allowed = Callable[[Array], Array]
 # The factors of more states take gigabytes and minutes.
 MOST_STATES = 24_000
@@ -90,7 +92,8 @@ class Ladder:
         Raises
         ------
         ToleranceError
-            If even the largest truncation is not fine enough.
+            If even the largest truncation is not fine enough. A larger noise is named
+            only where it is a remedy.
         """
         coarse = compute(self.generator(grown(first, level)))
         reached, tolerance, before = np.inf, np.nan, 0.0
@@ -105,10 +108,9 @@ class Ladder:
                 return fine, error, level
             reached, tolerance = float(error.max()), float(limit[error.argmax()])
             coarse, before = fine, change
-        remedy = (
-            f"raise `tolerance`: at noise {self.model.noise:g} no truncation of "
-            f"{most} states is fine enough"
-        )
+        remedy = f"raise `tolerance`: no truncation of {most} states is fine enough"
+        if self.model.noise * min(self.scales) ** 0.5 < LOW_NOISE:
+            remedy += f"; or the noise, with {self.model.noise:g} orbits last for long"
         raise ToleranceError(reached, tolerance, remedy)
 
 
