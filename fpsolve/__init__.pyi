@@ -67,6 +67,9 @@ from .model.smooth import SmoothLayDownModel as SmoothLayDownModel
 from .pages import report as report
 from .paths import Paths as Paths
 from .paths import sample_paths as sample_paths
+from .paths.fibres.fibre_curve import FibreCurve as FibreCurve
+from .paths.fibres.fit_curve import CurveFit as CurveFit
+from .paths.fibres.fit_curve import fit_curve as fit_curve
 from .reduced.energy import EnergyProcess as EnergyProcess
 from .reduced.hydrodynamic import HydrodynamicLimit as HydrodynamicLimit
 from .reduced.hydrodynamic import OrnsteinUhlenbeckLimit as OrnsteinUhlenbeckLimit

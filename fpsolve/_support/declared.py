@@ -39,7 +39,7 @@ _INTEGERS = (
 _TABLES = (
     "model", "grid", "scheme", "initial", "potential", "p0", "settings", "options",
     "solver", "sampler", "versions", "environment", "provenance", "call",
-    "fpsolve_checksums", "process", "web",
+    "fpsolve_checksums", "process", "web", "curve",
 )  # fmt: skip
 _LISTS = (
     "saved_steps", "truncation", "sectors", "fpsolve_attributes", "nozzle_phases",

@@ -19,6 +19,8 @@ from fpsolve._support.provenance import Stopwatch
 from fpsolve.errors import RunError, RunInterrupted
 from fpsolve.grids.cells import CellGrid
 from fpsolve.grids.plane import PlaneGrid
+from fpsolve.model.curves.curve import Curve
+from fpsolve.model.curves.dictionaries import curve_to_dict
 from fpsolve.model.fibre import FibreModel
 from fpsolve.model.identity.digests import digest_or_none
 from fpsolve.model.potentials.dictionaries import potential_to_dict
@@ -166,6 +168,8 @@ def described(value: Any, name: str, arrays: Arrays) -> Any:
         return {f"${own}": described(parts(), name, arrays)}
     if isinstance(value, Potential):
         return {"$potential": potential_to_dict(value)}
+    if isinstance(value, Curve):
+        return {"$curve": curve_to_dict(value)}
     if isinstance(value, FibreModel):
         return {"$model": value.to_dict()}
     if isinstance(value, CellGrid):

@@ -51,6 +51,10 @@ CAPTIONS = {
         "One fibre on the belt, as it is laid down.",
         "A single fibre on the moving belt",
     ),
+    "fibre-curve/fibre": (
+        "The beginning of the fibre on the belt, as it was measured.",
+        "A fibre on the belt, and its reference curve where it is known",
+    ),
     "hydrodynamic/hydrodynamic": (
         "Plane densities at saved s; white: contours of the stationary density.",
         "Maps of the density, and curves of entropy, means and spread",

@@ -15,6 +15,7 @@ __all__ = ["PAGES"]
 PAGES: dict[str, str | Callable[[Any, str], Section]] = {
     "solution": "fpsolve.pages.solution:section",
     "paths": "fpsolve.pages.paths:section",
+    "fibre-curve": "fpsolve.pages.fibre_curve:section",
     "hydrodynamic": "fpsolve.pages.limit_solutions:hydrodynamic_section",
     "energy": "fpsolve.pages.limit_solutions:energy_section",
     "steady-state": "fpsolve.pages.plain:steady_state",

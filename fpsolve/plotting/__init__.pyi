@@ -10,6 +10,7 @@ from .energy import plot_orbits as plot_orbits
 from .ensembles import plot_ensemble as plot_ensemble
 from .entropy import plot_entropy as plot_entropy
 from .ergodicity import plot_ergodic_averages as plot_ergodic_averages
+from .fibre_curve import plot_fibre_curve as plot_fibre_curve
 from .fibres import plot_fibre as plot_fibre
 from .fibres import plot_nozzles as plot_nozzles
 from .files import save_figures as save_figures

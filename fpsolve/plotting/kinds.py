@@ -19,6 +19,7 @@ from fpsolve.plotting.energy import (
 from fpsolve.plotting.ensembles import plot_ensemble
 from fpsolve.plotting.entropy import has_entropy, plot_entropy
 from fpsolve.plotting.ergodicity import plot_ergodic_averages
+from fpsolve.plotting.fibre_curve import plot_fibre_curve
 from fpsolve.plotting.fibres import plot_fibre
 from fpsolve.plotting.homogeneity import plot_web_homogeneity
 from fpsolve.plotting.hydrodynamic import plot_hydrodynamic
@@ -139,6 +140,7 @@ FIGURES: dict[str, Callable[[Any], Figures]] = {
         trajectory=(plot_trajectories, lambda p: replayed(p) and p.model.curve.fixed),
         fibre=(plot_fibre, lambda p: replayed(p) and not p.model.curve.fixed),
     ),
+    "fibre-curve": each(fibre=(plot_fibre_curve, always)),
     "hydrodynamic": each(hydrodynamic=(plot_hydrodynamic, saved)),
     "energy": each(law=(plot_energy_law, saved)),
     "steady-state": each(stationary=(plot_steady_state, always)),

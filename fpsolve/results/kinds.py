@@ -58,6 +58,10 @@ KINDS = {
         "paths", "fpsolve.paths.sampling:sample_paths",
         "fpsolve.paths.result:Paths", counts="steps",
     ),
+    "fibre-curve": Kind(
+        "fibre curves", "fpsolve.paths.fibres.fibre_curve:FibreCurve",
+        "fpsolve.paths.fibres.fibre_curve:FibreCurve",
+    ),
     "hydrodynamic": Kind(
         "solutions of the hydrodynamic limit",
         "fpsolve.reduced.hydrodynamic.limit:HydrodynamicLimit.solve",

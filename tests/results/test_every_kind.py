@@ -38,6 +38,7 @@ WIDE = fp.PhaseSpaceGrid(6.0, (24, 24, 16))
 FINER = fp.PhaseSpaceGrid(5.5, (24, 24, 16))
 CURVED = fp.SmoothPhaseSpaceGrid(6.0, 5.5, (12, 12, 8, 16))
 PLANE = fp.PlaneGrid(5.0, (16, 16))
+CIRCLE = np.stack([np.cos(0.1 * np.arange(9)), np.sin(0.1 * np.arange(9))], axis=-1)
 NARROW = fp.paths.GaussianLaw((0.5, 0.0), 0.8, 1.0, 1.0)
 # The grids are coarse ones, made for quick tests.
 LENIENT = {"boundary_tolerance": 1.0, "mass_tolerance": 1.0, "entropy_tolerance": 1.0}
@@ -79,6 +80,9 @@ MAKERS = {
     "paths": lambda: fp.sample_paths(BELT, 40, 0.5, 0.25, seed=3, initial=NARROW),
     "paths, smooth": lambda: fp.sample_paths(
         SMOOTH, 40, 0.5, 0.25, seed=3, initial=((0.5, 0.0), 1.0, 0.2)
+    ),
+    "fibre-curve": lambda: fp.FibreCurve(
+        [CIRCLE, CIRCLE[:7]], 0.1, TURNING.curve, position_error=0.01, s_start=[0, 2]
     ),
     "hydrodynamic": lambda: hydrodynamic(**SEVERAL),
     "hydrodynamic, plain": hydrodynamic,

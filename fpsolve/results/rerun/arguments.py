@@ -14,6 +14,7 @@ from fpsolve.errors import NotRepeatableError
 from fpsolve.evolution.call import ARRAY, KEPT, RESULT, USER_CODE, Call
 from fpsolve.grids.dictionaries import grid_from_dict
 from fpsolve.grids.plane import PlaneGrid
+from fpsolve.model.curves.dictionaries import curve_from_dict
 from fpsolve.model.potentials.dictionaries import potential_from_dict
 from fpsolve.model.process import Process
 from fpsolve.model.reading import model_from_dict
@@ -41,6 +42,7 @@ _SCHEME, _MODEL = "$scheme", "$model"
 # What an object is called in a call, and what makes it of its parts.
 READERS: dict[str, Callable[[Any], Any]] = {
     "$potential": potential_from_dict,
+    "$curve": curve_from_dict,
     _MODEL: model_from_dict,
     "$grid": grid_from_dict,
     "$plane": PlaneGrid.from_dict,

@@ -1,0 +1,1 @@
+"""Measured or simulated fibres as curves on the belt: points, angles, curvatures."""

@@ -1,0 +1,1 @@
+"""From a fibre curve to the parameters of the lay-down models."""
