@@ -28,6 +28,7 @@ from .errors import EdgeLengthError as EdgeLengthError
 from .errors import EntropyRiseError as EntropyRiseError
 from .errors import EquilibriumError as EquilibriumError
 from .errors import FileFormatError as FileFormatError
+from .errors import FlowRangeError as FlowRangeError
 from .errors import FpsolveError as FpsolveError
 from .errors import GridMismatchError as GridMismatchError
 from .errors import MassCorrectionError as MassCorrectionError

@@ -26,6 +26,7 @@ __all__ = [
     "EntropyRiseError",
     "EquilibriumError",
     "FileFormatError",
+    "FlowRangeError",
     "ForkedProcessError",
     "FpsolveError",
     "GridMismatchError",
@@ -368,6 +369,21 @@ class CheckpointMismatchError(FpsolveError, ValueError):
 
     def _texts(self) -> dict[str, str]:
         return {"all": ", ".join(self.differences)}
+
+
+@stated
+class FlowRangeError(FpsolveError):
+    """A fibre has left the region in which the flow of the air is known."""
+
+    t: float = said("Time at which it is there.")
+    position: tuple[float, ...] = said("A place outside, in m.")
+    _says = (
+        "the fibre is at {place} m at t = {t:g} s, outside of the table of the flow; "
+        "enlarge the table or shorten the fibre."
+    )
+
+    def _texts(self) -> dict[str, str]:
+        return {"place": "(" + ", ".join(f"{x:.4g}" for x in self.position) + ")"}
 
 
 @stated

@@ -11,7 +11,12 @@ from numpy.typing import ArrayLike
 from fpsolve._support.arrays import Array, check_finite_numbers
 from fpsolve._support.checks import check_positive, shown
 
-__all__ = ["drag_coefficients", "drag_force", "drag_resistances"]
+__all__ = [
+    "check_slenderness",
+    "drag_coefficients",
+    "drag_force",
+    "drag_resistances",
+]
 
 # Reynolds numbers up to which Oseen's expansion holds, and from which the boundary
 # layer decides.
@@ -110,12 +115,7 @@ def drag_resistances(
             f"`w` must be non-negative, got {w.min():g}; it is the modulus of the "
             "velocity across the fibre times d/ν."
         )
-    slenderness = check_positive("slenderness", slenderness)
-    if slenderness > MOST_SLENDERNESS:
-        raise ValueError(
-            f"`slenderness` must be at most {MOST_SLENDERNESS:g}, got {slenderness:g}; "
-            "a fibre is many times longer than thick."
-        )
+    slenderness = check_slenderness("slenderness", slenderness)
     joined = _joint(slenderness)
     normal, tangential = _resistances(np.maximum(w, joined))
     ends, starts, slopes = _at_joint(slenderness)
@@ -191,6 +191,17 @@ def drag_force(
     return np.asarray(
         scale * (normal[..., None] * across + tangential[..., None] * along)
     )
+
+
+def check_slenderness(name: str, value: object) -> float:
+    """Return it; ValueError unless positive and at most `MOST_SLENDERNESS`."""
+    slenderness = check_positive(name, value)
+    if slenderness > MOST_SLENDERNESS:
+        raise ValueError(
+            f"`{name}` must be at most {MOST_SLENDERNESS:g}, got {slenderness:g}; a "
+            "fibre is many times longer than thick."
+        )
+    return slenderness
 
 
 def _resistances(w: Array) -> tuple[Array, Array]:

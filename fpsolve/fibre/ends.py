@@ -9,7 +9,16 @@ import numpy as np
 from fpsolve._support.arrays import Array, check_finite_numbers
 from fpsolve._support.checks import shown
 
-__all__ = ["Clamped", "End", "Free", "Hinged"]
+__all__ = [
+    "Clamped",
+    "End",
+    "Free",
+    "Hinged",
+    "Vector",
+    "as_vector",
+    "check_end",
+    "place_of",
+]
 
 Vector = tuple[float, float, float]
 # A direction that is shorter is none: its length would be rounding.
@@ -34,7 +43,7 @@ class Hinged:
     position: Vector
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "position", _vector("position", self.position))
+        object.__setattr__(self, "position", as_vector("position", self.position))
 
 
 @dataclass(frozen=True)
@@ -54,8 +63,8 @@ class Clamped:
     direction: Vector
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "position", _vector("position", self.position))
-        direction = np.array(_vector("direction", self.direction))
+        object.__setattr__(self, "position", as_vector("position", self.position))
+        direction = np.array(as_vector("direction", self.direction))
         length = float(np.linalg.norm(direction))
         if not length > SHORTEST:
             raise ValueError(
@@ -83,7 +92,8 @@ def place_of(end: End) -> Array | None:
     return None if isinstance(end, Free) else np.array(end.position)
 
 
-def _vector(name: str, value: object) -> Vector:
+def as_vector(name: str, value: object) -> Vector:
+    """Three numbers as a tuple; ValueError if they are not."""
     found = check_finite_numbers(name, value)
     if found.shape != (3,):
         raise ValueError(f"`{name}` must be three numbers, got {shown(value)}.")

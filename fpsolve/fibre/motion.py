@@ -14,7 +14,9 @@ from fpsolve._support.checks import (
     check_non_negative,
     check_positive,
     check_real,
+    shown,
 )
+from fpsolve.fibre.air import AirFlow
 from fpsolve.fibre.forces import Forces
 from fpsolve.fibre.shapes import checked_shape, first_shape
 from fpsolve.fibre.string import String
@@ -87,10 +89,11 @@ def simulate(
     velocity: ArrayLike | None = None,
     theta: float = 0.5,
     damping: float = 0.0,
+    air: AirFlow | None = None,
     save_every: int | None = None,
     estimate_error: bool = True,
 ) -> Motion:
-    """ρA ∂_tt r + c ∂_t r = ∂_s(T ∂_s r − ∂_s(EI ∂_ss r)) + ρA g, |∂_s r| = 1.
+    """ρA ∂_tt r = ∂_s(T ∂_s r − ∂_s(EI ∂_ss r)) + ρA g + a − c ∂_t r, |∂_s r| = 1.
 
     By the θ-scheme, whose tension is one more unknown of every step: edges have their
     length to 1e-12 after each, for any step. With θ = ½ it is of order 2 and keeps the
@@ -112,6 +115,8 @@ def simulate(
         From ½ to 1.
     damping : float
         c in N s/m² on every piece of the fibre.
+    air : AirFlow, optional
+        What pulls at it with the force a per length, taken at the middle of every step.
     save_every : int, optional
         Keep positions of every so-many-th step, and of the last; by default of the
         first and the last.
@@ -125,8 +130,12 @@ def simulate(
     Raises
     ------
     ValueError
-        If a number is out of its range, the shape does not fit the fibre, or the
-        velocity would stretch it.
+        If a number is out of its range, the shape does not fit the fibre, the velocity
+        would stretch it, or that of the air is no finite number.
+    TypeError
+        If `air` is no `AirFlow`.
+    FlowRangeError
+        If the fibre leaves the table of the air.
     EdgeLengthError
         If Newton's method does not converge, as for steps in which an edge turns
         around.
@@ -150,7 +159,9 @@ def simulate(
     r = first_shape(string) if shape is None else checked_shape(string, shape)
     v = _checked_velocity(string, r, velocity)
     estimate_error = check_flag("estimate_error", estimate_error)
-    step = ThetaStep(string, t_end / n_steps, theta, damping)
+    if not (air is None or isinstance(air, AirFlow)):
+        raise TypeError(f"`air` must be an `AirFlow`, got {shown(air)}.")
+    step = ThetaStep(string, t_end / n_steps, theta, damping, air)
     motion = _motion(step, r, v, n_steps, every)
     if not estimate_error or n_steps % 2:
         return motion

@@ -16,7 +16,15 @@ from fpsolve._support.checks import (
     check_positive,
     keep_checked,
 )
-from fpsolve.fibre.ends import Clamped, End, Free, Vector, _vector, check_end, place_of
+from fpsolve.fibre.ends import (
+    Clamped,
+    End,
+    Free,
+    Vector,
+    as_vector,
+    check_end,
+    place_of,
+)
 
 __all__ = ["String"]
 
@@ -79,7 +87,7 @@ class String:
         keep_checked(self, check_positive, "length", "diameter", "density")
         keep_checked(self, check_non_negative, "youngs_modulus")
         keep_checked(self, check_end, "start", "end")
-        keep_checked(self, _vector, "gravity")
+        keep_checked(self, as_vector, "gravity")
         n_edges = check_integer("n_edges", self.n_edges, FEWEST_EDGES)
         object.__setattr__(self, "n_edges", n_edges)
         first, last = place_of(self.start), place_of(self.end)

@@ -107,6 +107,11 @@ EXAMPLES = [
         "stiffness is left, 1e-10 are allowed; give a `shape` that is nearer to it.",
     ),
     (
+        errors.FlowRangeError(t=0.25, position=(0.1, 0.0, -1.5)),
+        "the fibre is at (0.1, 0, -1.5) m at t = 0.25 s, outside of the table of the "
+        "flow; enlarge the table or shorten the fibre.",
+    ),
+    (
         errors.ToleranceError(reached=2.5e-6, tolerance=1e-10),
         "tolerance 1e-10 not reached: the error is estimated at 2.5e-06; raise "
         "`memory_limit` or enlarge `tolerance`.",
