@@ -58,4 +58,19 @@ def _tables(prediction: WebPrediction) -> list[Block]:
     if strips:
         told = "Strips of the mean web, relative to it."
         tables.append(Table(told, ("period", "amplitude", "error"), strips))
-    return tables
+    return tables + _gradients(prediction)
+
+
+def _gradients(prediction: WebPrediction) -> list[Block]:
+    """∂CV by every parameter, a column for every zone."""
+    if prediction.gradient is None or prediction.gradient_errors is None:
+        return []
+    rows = []
+    for place, name in enumerate(prediction.parameters):
+        pairs = zip(
+            prediction.gradient[place], prediction.gradient_errors[place], strict=True
+        )
+        rows.append((name, *(f"{one:.4g} ± {error:.1g}" for one, error in pairs)))
+    told = "Derivatives of CV in the parameters, each with bounds of its error."
+    sides = (f"side {side:g}" for side in prediction.zones)
+    return [Table(told, ("parameter", *sides), rows, words=frozenset((0,)))]

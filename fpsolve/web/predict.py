@@ -23,6 +23,7 @@ from fpsolve.spectral.evolution.quadratic import (
 from fpsolve.spectral.resolvent.ladder import Ladder
 from fpsolve.web import coherent
 from fpsolve.web.band_power import band_power
+from fpsolve.web.gradient import of_process, with_gradient
 from fpsolve.web.prediction import POSITIONS, WebPrediction
 from fpsolve.web.table import Axis, SpectrumTable
 from fpsolve.web.zone_variance import zone_variance
@@ -49,6 +50,7 @@ def predict_web(
     positions: str = "regular",
     bands: Sequence[tuple[float, float]] = (),
     tolerance: float = 5e-3,
+    gradients: bool = False,
 ) -> WebPrediction:
     """CV² = v d ∫ Ŝ(k) sinc²(k1 x/2) sinc²(k2 x/2) d²k/(2π)² + coherent part.
 
@@ -58,6 +60,11 @@ def predict_web(
     positions that know nothing of each other add d ∫ |φ(0, k2)|² sinc²(k2 x/2) dk2/2π,
     φ the characteristic function of ξ, and regular ones 2 Σ |φ(0, 2πj/d)|²
     sinc²(πjx/d), the strips.
+
+    With `gradients` the result has ∂CV/∂θ for every parameter θ, from adjoint solutions
+    with the same factors: of A u = w and Ŝ = 2 Re E u the derivative is that of E and
+    of A, ∂Ŝ = 2 Re (∂E u − λ ∂A u), Aᵀλ = E. The polynomials are kept while σ_i
+    changes. Of a process the derivatives are those in its own numbers in SI units.
 
     Parameters
     ----------
@@ -74,6 +81,9 @@ def predict_web(
         Shortest and longest wavelength of bands for the `cloudiness`.
     tolerance : float
         For every CV, relative.
+    gradients : bool
+        Whether derivatives are computed, too. They do not change the rest, and have the
+        errors that they have: `tolerance` is for CV.
 
     Returns
     -------
@@ -93,10 +103,11 @@ def predict_web(
     unit = model.length if isinstance(model, Process) else 1.0
     fibre: Any = model.model if isinstance(model, Process) else model
     check_model(fibre)
-    return of_model(
+    found = of_model(
         fibre, unit, check_positive("spacing", spacing), zones, positions,
-        checked_bands(bands), checked_tolerance(tolerance),
+        checked_bands(bands), checked_tolerance(tolerance), bool(gradients),
     )  # fmt: skip
+    return of_process(found) if isinstance(model, Process) else found
 
 
 def of_model(
@@ -107,6 +118,7 @@ def of_model(
     positions: str,
     pairs: Array,
     tolerance: float,
+    gradients: bool = False,
 ) -> WebPrediction:
     """The prediction for a model whose unit of length is `unit`."""
     if not abs(model.curve.speed) > 0:
@@ -118,7 +130,7 @@ def of_model(
     check_one_of("positions", positions, POSITIONS)
     sides = checked_zones(zones, unit, model)
     ladder = Ladder(model)
-    table, variances, errors = refined(ladder, sides / unit, tolerance)
+    table, variances, errors = refined(ladder, sides / unit, tolerance, gradients)
     per_line = abs(model.curve.speed) * distance
     of_positions = getattr(coherent, f"{positions}_positions")
     added = np.array([of_positions(ladder, distance, float(x)) for x in sides / unit])
@@ -130,21 +142,24 @@ def of_model(
     lines = N_STRIPS if positions == "regular" else 0
     amplitudes, amplitude_errors = coherent.strips(ladder, distance, lines)
     tensor, tensor_errors = coherent.orientation(ladder)
-    return WebPrediction(
+    found = WebPrediction(
         model, spacing, unit, positions, sides, cv,
         0.5 * (per_line * errors + added[:, 1]) / cv,
         pairs[:, 0], pairs[:, 1],
         per_line * powers[:, 0], per_line * powers[:, 1],
         amplitudes, amplitude_errors, tensor, tensor_errors,
     )  # fmt: skip
+    if not gradients:
+        return found
+    return with_gradient(found, table, (variances, errors))
 
 
 def refined(
-    ladder: Ladder, sides: Array, tolerance: float
+    ladder: Ladder, sides: Array, tolerance: float, gradients: bool = False
 ) -> tuple[SpectrumTable, Array, Array]:
     """A table fine enough for all zones, their variances and bounds of the errors."""
     # CV² is wrong by twice as much as CV.
-    table = SpectrumTable.of(ladder, SHARE * 2 * tolerance)
+    table = SpectrumTable.of(ladder, SHARE * 2 * tolerance, gradients)
     while True:
         found = [zone_variance(table, float(side)) for side in sides]
         values = np.array([value for value, _, _ in found])

@@ -10,7 +10,7 @@ import numpy as np
 
 from fpsolve._support.arrays import Array
 from fpsolve.evolution.call import Call
-from fpsolve.evolution.layout import Attribute, Layout, Variable
+from fpsolve.evolution.layout import Attribute, Layout, Part, Source, Stored, Variable
 from fpsolve.evolution.parts import Model
 from fpsolve.evolution.saved import Saved
 from fpsolve.model.laydown import LayDownModel
@@ -20,12 +20,30 @@ __all__ = ["POSITIONS", "WebPrediction"]
 # Of the nozzles across the belt.
 POSITIONS = ("regular", "random")
 _ZONE, _BAND, _STRIP = ("zone",), ("band",), ("strip",)
+_PARAMETER = ("parameter",)
 
 
 def _checked_positions(name: str) -> str:
     if name not in POSITIONS:
         raise ValueError(f"`positions` must be one of {POSITIONS}, got {name!r}")
     return name
+
+
+class _Parameters(Part):
+    """What it is differentiated in, as texts; none in a file without derivatives."""
+
+    def write(self, result: Any) -> Stored:
+        names = np.array(result.parameters, dtype=object)
+        return {"parameter": (_PARAMETER, names)} if names.size else {}
+
+    def read(self, source: Source) -> dict[str, Any]:
+        if "parameter" not in source.dataset:
+            return {"parameters": ()}
+        stored = source.dataset["parameter"]
+        names = tuple(stored.values.ravel().tolist())
+        if stored.dims != _PARAMETER or not all(isinstance(one, str) for one in names):
+            raise ValueError("`parameter` must hold names over parameter")
+        return {"parameters": names}
 
 
 PREDICTION = Layout(
@@ -46,6 +64,14 @@ PREDICTION = Layout(
     Variable("orientation", ("row", "column"), "⟨τ⊗τ⟩"),
     Variable("orientation_error", ("row", "column"), "error of ⟨τ⊗τ⟩",
              "orientation_errors"),
+    _Parameters(),
+    Variable("gradient", ("parameter", "zone"), "∂CV/∂parameter", optional=True),
+    Variable("gradient_error", ("parameter", "zone"), "error of ∂CV/∂parameter",
+             "gradient_errors", optional=True),
+    Variable("strip_gradient", ("parameter", "strip"),
+             "∂amplitude/∂parameter of the strips", optional=True),
+    Variable("strip_gradient_error", ("parameter", "strip"),
+             "error of ∂amplitude/∂parameter", "strip_gradient_errors", optional=True),
 )  # fmt: skip
 
 
@@ -78,6 +104,13 @@ class WebPrediction(Saved):
         regular positions leave in the mean web; none for random ones.
     orientation, orientation_errors : ndarray, shape (2, 2)
         ⟨τ⊗τ⟩ over laid length, index 0 in the machine direction.
+    parameters : tuple of str
+        Of a model "noise", "belt_speed", "sigma1", "sigma2", "spacing", of a process
+        "speed_ratio" in place of the second; none unless `gradients` were asked for.
+    gradient, gradient_errors : ndarray, shape (parameter, zone), or None
+        ∂CV/∂parameter at fixed other parameters, and bounds of the errors.
+    strip_gradient, strip_gradient_errors : ndarray, shape (parameter, strip), or None
+        ∂ of `strips`.
     call : Call or None
         How it was made.
     provenance : dict
@@ -102,6 +135,11 @@ class WebPrediction(Saved):
     strip_errors: Array
     orientation: Array
     orientation_errors: Array
+    parameters: tuple[str, ...] = ()
+    gradient: Array | None = None
+    gradient_errors: Array | None = None
+    strip_gradient: Array | None = None
+    strip_gradient_errors: Array | None = None
     call: Call | None = None
     provenance: dict[str, Any] = field(default_factory=dict)
 
@@ -113,6 +151,17 @@ class WebPrediction(Saved):
         return 1.0 / (abs(float(self.model.curve.velocity(0.0)[0])) * self.spacing)
 
     @property
+    def mean_gradient(self) -> Array | None:
+        """∂`mean` of 1/(v d) in every parameter, exactly; None without `gradients`."""
+        if not self.parameters:
+            return None
+        speed = math.nan if self.model is None else self.model.belt_speed
+        by = {"belt_speed": speed, "speed_ratio": speed, "spacing": self.spacing}
+        return np.array(
+            [-self.mean / by[name] if name in by else 0.0 for name in self.parameters]
+        )
+
+    @property
     def machine_cross_ratio(self) -> float:
         """MD/CD = ⟨τ₁²⟩/⟨τ₂²⟩, 1 without a preferred direction."""
         return float(self.orientation[0, 0] / self.orientation[1, 1])
@@ -122,7 +171,8 @@ class WebPrediction(Saved):
             f"{cv:.4g} ± {error:.1g} at {zone:g}"
             for zone, cv, error in zip(self.zones, self.cv, self.errors, strict=True)
         )
-        return f"WebPrediction(mean {self.mean:.4g}, CV {told})"
+        by = f", ∂ by {', '.join(self.parameters)}" if self.parameters else ""
+        return f"WebPrediction(mean {self.mean:.4g}, CV {told}{by})"
 
     def small_zone_law(self) -> Array:
         """CV of zones so small that fibres cross them as random straight lines.

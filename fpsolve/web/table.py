@@ -10,9 +10,12 @@ import numpy as np
 
 from fpsolve._support.arrays import Array
 from fpsolve.spectral.resolvent.basis import Basis
-from fpsolve.spectral.resolvent.fibre_spectrum import fibre_spectrum
+from fpsolve.spectral.resolvent.fibre_spectrum import (
+    fibre_gradient,
+    fibre_spectrum,
+)
 from fpsolve.spectral.resolvent.ladder import Ladder
-from fpsolve.spectral.resolvent.limit import short_wave_limit
+from fpsolve.spectral.resolvent.limit import limit_derivatives, short_wave_limit
 from fpsolve.web.even import EvenNodes
 
 __all__ = ["AXES", "Axis", "SpectrumTable"]
@@ -33,17 +36,24 @@ SMALL = 1e-3
 
 @dataclass(eq=False)
 class Source:
-    """Ŝ and its error at wave vectors, each computed once.
+    """Ŝ, or a derivative, and its error at wave vectors, each computed once.
 
     Attributes
     ----------
     ladder : Ladder
     tolerance : float
+        Of Ŝ.
+    gradients : bool
+        Whether derivatives are computed beside Ŝ.
+    column : int
+        0 for Ŝ, then the derivatives in the order of `Generator.parameters`.
     """
 
     ladder: Ladder
     tolerance: float
-    _known: dict[tuple[float, float], tuple[float, float]] = field(default_factory=dict)
+    gradients: bool = False
+    column: int = 0
+    _known: dict[tuple[float, float], Array] = field(default_factory=dict)
 
     def __call__(self, k1: Array, k2: Array) -> tuple[Array, Array]:
         """Values and errors in the shape of `k1`."""
@@ -51,10 +61,11 @@ class Source:
         new = sorted(set(pairs) - self._known.keys())
         if new:
             first, second = np.array(new).T
-            found = fibre_spectrum(self.ladder, first, second, self.tolerance)
-            numbers = zip(*(one.tolist() for one in found), strict=True)
+            compute = fibre_gradient if self.gradients else fibre_spectrum
+            found = compute(self.ladder, first, second, self.tolerance)
+            numbers = np.stack(found, axis=1).reshape(len(new), 2, -1)
             self._known.update(zip(new, numbers, strict=True))
-        values = np.array([self._known[pair] for pair in pairs])
+        values = np.array([self._known[pair][:, self.column] for pair in pairs])
         return values[:, 0].reshape(k1.shape), values[:, 1].reshape(k1.shape)
 
 
@@ -76,7 +87,9 @@ class SpectrumTable:
     nodes: dict[Axis, EvenNodes]
 
     @classmethod
-    def of(cls, ladder: Ladder, tolerance: float) -> SpectrumTable:
+    def of(
+        cls, ladder: Ladder, tolerance: float, gradients: bool = False
+    ) -> SpectrumTable:
         """With few nodes, where the model has its scales."""
         model, (sigma1, sigma2) = ladder.model, ladder.scales
         wide, diffusivity = max(sigma1, sigma2), model.diffusivity
@@ -95,11 +108,19 @@ class SpectrumTable:
             )
             for axis, (end, scale) in scales.items()
         }
-        return cls(Source(ladder, tolerance), nodes)
+        return cls(Source(ladder, tolerance, gradients), nodes)
 
     def finer(self, axis: Axis) -> SpectrumTable:
         """With twice as many nodes along one axis."""
         return replace(self, nodes=self.nodes | {axis: self.nodes[axis].finer()})
+
+    def derivative(self, parameter: int) -> SpectrumTable:
+        """The same of a derivative of Ŝ, between the same nodes.
+
+        A fixed set of nodes makes the interpolant of the derivative the derivative of
+        the interpolant.
+        """
+        return replace(self, source=replace(self.source, column=1 + parameter))
 
     @property
     def ends(self) -> tuple[float, float]:
@@ -135,12 +156,17 @@ class SpectrumTable:
     def share(self) -> float:
         """The largest error outside, relative to κ Ŝ or to what is small of it."""
         values, errors = self.outside
+        if self.source.column:
+            values, _ = replace(self, source=replace(self.source, column=0)).outside
         return float(np.max(errors / np.maximum(values, SMALL * values.max())))
 
     def _law(self, k1: Array, k2: Array) -> Array:
         generator = self.source.ladder.generator(LAW)
-        pairs = zip(k1.tolist(), k2.tolist(), strict=True)
-        return np.array([short_wave_limit(generator, pair) for pair in pairs])
+        pairs = list(zip(k1.tolist(), k2.tolist(), strict=True))
+        if not self.source.column:
+            return np.array([short_wave_limit(generator, pair) for pair in pairs])
+        changes = np.array([limit_derivatives(generator, pair) for pair in pairs])
+        return np.asarray(changes[:, self.source.column - 1])
 
     def __call__(self, k1: Array, k2: Array, fewer: Axis | None = None) -> Array:
         """Ŝ at wave vectors k1, k2 >= 0, of one shape and none of them zero."""

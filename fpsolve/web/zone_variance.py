@@ -74,9 +74,17 @@ def window_integrals(zone: float, begin: float, end: float) -> tuple[Array, Arra
 
 
 def zone_variance(
-    table: SpectrumTable, zone: float
+    table: SpectrumTable, zone: float, of: SpectrumTable | None = None
 ) -> tuple[float, dict[Axis, float], float]:
     """∫ Ŝ sinc²(k1 x/2) sinc²(k2 x/2) d²k/(2π)², and its errors.
+
+    Parameters
+    ----------
+    table : SpectrumTable
+        Of Ŝ or of a derivative.
+    zone : float
+    of : SpectrumTable, optional
+        Of Ŝ where `table` is of a derivative, whose errors outside are relative to it.
 
     Returns
     -------
@@ -88,14 +96,15 @@ def zone_variance(
         By the errors of the nodes.
     """
     inside = _inside(table, zone, None)
-    outside, out_error = _outside(table, zone, None)
+    outside = _outside(table, zone, None)
+    size = outside if of is None else _outside(of, zone, None)
     changes: dict[Axis, float] = {}
     for axis in AXES:
         if axis in ("along", "across"):
             changes[axis] = abs(_inside(table, zone, axis)[0] - inside[0])
         else:
-            changes[axis] = abs(_outside(table, zone, axis)[0] - outside)
-    return inside[0] + outside, changes, inside[1] + out_error
+            changes[axis] = abs(_outside(table, zone, axis) - outside)
+    return inside[0] + outside, changes, inside[1] + table.share * abs(size)
 
 
 def _inside(
@@ -113,9 +122,7 @@ def _inside(
     return value / np.pi**2, error / np.pi**2
 
 
-def _outside(
-    table: SpectrumTable, zone: float, fewer: Axis | None
-) -> tuple[float, float]:
+def _outside(table: SpectrumTable, zone: float, fewer: Axis | None) -> float:
     """Over rectangles that double in size, until nothing is left to count."""
     total = 0.0
     for first, second in _rectangles(table, zone):
@@ -125,7 +132,7 @@ def _outside(
             k, weights = window_integrals(zone, interval.begin, interval.end)
             rows.append(weights @ interval.at(k))
         total += float(rows[0] @ table(k1, k2, fewer) @ rows[1])
-    return total / np.pi**2, table.share * abs(total) / np.pi**2
+    return total / np.pi**2
 
 
 def _rectangles(

@@ -106,7 +106,7 @@ def test_no_wave_has_no_power():
 def test_noise_is_blamed_only_where_more_of_it_would_help(model, blamed):
     with pytest.raises(ToleranceError, match="raise `tolerance`") as raised:
         Ladder(model).climb(
-            Basis(4, 3), lambda g: np.array([g.basis.size / 1.0]), lambda x: 1e-9 * x,
+            Basis(4, 3), lambda g: np.array([[g.basis.size / 1.0]]), lambda x: 1e-9 * x,
             most=500,
         )  # fmt: skip
     assert ("or the noise" in str(raised.value)) == blamed

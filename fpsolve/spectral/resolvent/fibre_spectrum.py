@@ -1,6 +1,9 @@
-"""Ŝ(k) of one fibre at many wave vectors, to a tolerance."""
+"""Ŝ(k) of one fibre and its derivatives at many wave vectors, to a tolerance."""
 
 from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,11 +12,16 @@ from fpsolve._support.arrays import Array
 from fpsolve.spectral.resolvent.basis import Basis
 from fpsolve.spectral.resolvent.generator import Generator
 from fpsolve.spectral.resolvent.ladder import Ladder
-from fpsolve.spectral.resolvent.limit import short_wave_limit
-from fpsolve.spectral.resolvent.long_limit import long_wave_limit, reach_of
+from fpsolve.spectral.resolvent.limit import limit_derivatives, short_wave_limit
+from fpsolve.spectral.resolvent.long_limit import NEAR, long_wave_limit, reach_of
+from fpsolve.spectral.resolvent.plane_waves import WaveVector
+from fpsolve.spectral.resolvent.sensitivity import (
+    long_wave_columns,
+    short_wave_columns,
+)
 from fpsolve.spectral.resolvent.waves import along_long_waves, along_short_waves
 
-__all__ = ["fibre_spectrum"]
+__all__ = ["fibre_gradient", "fibre_spectrum"]
 
 # |k| σ up to which one factorisation per k1 serves every k2: e^{ik·ξ} needs polynomials
 # up to the degree |k σ|² and some more.
@@ -32,32 +40,91 @@ FIRST_LONG, MOST_STATES = Basis(14, 7), 40_000
 DEGREE, HARMONICS, PER_ROOT = 8, 5, 1.5
 
 
+class Method(NamedTuple):
+    """What is computed of a generator: a column of values, and maybe of derivatives.
+
+    Attributes
+    ----------
+    long : callable
+        Of a generator, a k1 and many k2, (k2, column).
+    short : callable
+        Of a generator and a k, (column,).
+    law : callable
+        The same for the end of short waves.
+    n_columns : int
+    """
+
+    long: Callable[[Generator, float, Sequence[float]], Array]
+    short: Callable[[Generator, WaveVector], Array]
+    law: Callable[[Generator, WaveVector], Array]
+    n_columns: int
+
+
+VALUES = Method(
+    lambda generator, k1, k2: along_long_waves(generator, k1, k2)[:, None],
+    lambda generator, k: np.array([along_short_waves(generator, k)]),
+    lambda generator, k: np.array([short_wave_limit(generator, k)]),
+    1,
+)
+GRADIENTS = Method(
+    long_wave_columns,
+    short_wave_columns,
+    lambda generator, k: np.append(
+        short_wave_limit(generator, k), limit_derivatives(generator, k)
+    ),
+    1 + len(Generator.parameters),
+)
+
+
 def fibre_spectrum(
     ladder: Ladder, k1: Array, k2: Array, tolerance: float
 ) -> tuple[Array, Array]:
     """Ŝ at (k1[i], k2[i]) and bounds of the errors.
 
-    Ŝ is even in k, and in k2 by reflection: computed once for what differs. The error
-    is at most `tolerance` times Ŝ, of short waves |k| σ > `LONG` times the larger of Ŝ
-    and σ/(1 + |k| σ), σ the smaller throwing range.
+    The error is at most `tolerance` times Ŝ, of short waves |k| σ > `LONG` times the
+    larger of Ŝ and σ/(1 + |k| σ), σ the smaller throwing range.
     """
+    values, errors = _columns(ladder, k1, k2, tolerance, VALUES)
+    return values[:, 0], errors[:, 0]
+
+
+def fibre_gradient(
+    ladder: Ladder, k1: Array, k2: Array, tolerance: float
+) -> tuple[Array, Array]:
+    """Ŝ and its derivatives in `Generator.parameters`, (i, 1 + parameter), with errors.
+
+    Of the truncations that are fine enough for Ŝ to the tolerance: values and their
+    errors are those of `fibre_spectrum`, and derivatives have their own.
+    """
+    return _columns(ladder, k1, k2, tolerance, GRADIENTS)
+
+
+def _columns(
+    ladder: Ladder, k1: Array, k2: Array, tolerance: float, method: Method
+) -> tuple[Array, Array]:
+    """Ŝ is even in k, and in k2 by reflection: computed once for what differs."""
     points = np.stack([np.abs(k1), np.abs(k2)], axis=1)
     distinct, inverse = np.unique(points, axis=0, return_inverse=True)
+    values, errors = np.zeros((2, len(distinct), method.n_columns))
     sigma1, sigma2 = ladder.scales
     long = np.hypot(distinct[:, 0] * sigma1, distinct[:, 1] * sigma2) <= LONG
-    values, errors, near = longest_waves(ladder, distinct, tolerance)
     others = np.flatnonzero(~long)
+    values[:, 0], errors[:, 0], near = longest_waves(ladder, distinct, tolerance)
+    if method.n_columns > 1:
+        for place in np.flatnonzero(near & distinct.any(axis=1)):
+            longest = longest_derivatives(ladder, distinct[place], tolerance, method)
+            values[place, 1:], errors[place, 1:] = longest
     long &= ~near
     for one in np.unique(distinct[long, 0]):
         found = np.flatnonzero(long & (distinct[:, 0] == one))
-        group = long_waves(ladder, float(one), distinct[found, 1], tolerance)
+        group = long_waves(ladder, float(one), distinct[found, 1], tolerance, method)
         values[found], errors[found] = group
     level = 0
     # From long to short, since what was fine enough for one is for the next.
     for place in others[np.argsort(np.hypot(*distinct[others].T), kind="stable")]:
         wave = float(distinct[place, 0]), float(distinct[place, 1])
         values[place], errors[place], level = short_wave(
-            ladder, wave, tolerance, max(level - 1, 0)
+            ladder, wave, tolerance, max(level - 1, 0), method
         )
     inverse = inverse.reshape(-1)
     return values[inverse], errors[inverse]
@@ -83,22 +150,52 @@ def longest_waves(
     return values, errors, near
 
 
+def longest_derivatives(
+    ladder: Ladder, k: Array, tolerance: float, method: Method
+) -> tuple[Array, Array]:
+    """Of Ŝ at one k ≠ 0 where it is a quadratic form, from where that ends."""
+    ratio = reach_of(ladder) / np.hypot(*k)
+    ends = long_waves(ladder, float(k[0] * ratio), k[1:] * ratio, tolerance, method)
+    values, errors = (one[0, 1:] / ratio**2 for one in ends)
+    # As the form, they lack about the square of `NEAR`.
+    return values, errors + 10 * NEAR**2 * np.abs(values)
+
+
+def allowed(
+    ladder: Ladder, found: Array, floor: Array | float, tolerance: float, method: Method
+) -> Array:
+    """Largest errors of Ŝ, and units in which those of derivatives are told.
+
+    A parameter changes Ŝ by about Ŝ times its own relative change, the speed of the
+    belt by Ŝ times its change in units of that of the fibre.
+    """
+    size = tolerance * np.maximum(np.abs(found[:, :1]), floor)
+    units = np.array(
+        [1.0, 1.0 / ladder.model.noise, 1.0, *(1.0 / s for s in ladder.scales)]
+    )
+    return np.asarray(size * units[: method.n_columns])
+
+
 def long_waves(
-    ladder: Ladder, k1: float, k2: Array, tolerance: float
+    ladder: Ladder, k1: float, k2: Array, tolerance: float, method: Method = VALUES
 ) -> tuple[Array, Array]:
     """Ŝ at one k1 and many k2, all of one truncation."""
     values, errors, _ = ladder.climb(
         FIRST_LONG,
-        lambda generator: along_long_waves(generator, k1, k2.tolist()),
-        lambda found: tolerance * np.abs(found),
+        lambda generator: method.long(generator, k1, k2.tolist()),
+        lambda found: allowed(ladder, found, 0.0, tolerance, method),
         most=MOST_STATES,
     )
     return values, errors
 
 
 def short_wave(
-    ladder: Ladder, k: tuple[float, float], tolerance: float, level: int = 0
-) -> tuple[float, float, int]:
+    ladder: Ladder,
+    k: WaveVector,
+    tolerance: float,
+    level: int = 0,
+    method: Method = VALUES,
+) -> tuple[Array, Array, int]:
     """Ŝ at one k; beyond `FAR` by the law of the angle and what it lacks there."""
     sigma1, sigma2 = ladder.scales
     spread = max(1.0, ladder.model.diffusivity * max(sigma1, sigma2))
@@ -110,18 +207,22 @@ def short_wave(
         DEGREE,
         round(HARMONICS + PER_ROOT * np.sqrt(size * max(sigma1, sigma2) / spread)),
     )
-    floor = floor_of(ladder, size)
+    floor = float(floor_of(ladder, size))
 
     def both(generator: Generator) -> Array:
-        law = short_wave_limit(generator, nearer)
-        return np.array([along_short_waves(generator, nearer), law])
+        return np.stack(
+            [method.short(generator, nearer), method.law(generator, nearer)]
+        )
 
     values, errors, level = ladder.climb(
-        first, both, lambda found: tolerance * np.maximum(np.abs(found), floor), level
+        first,
+        both,
+        lambda found: allowed(ladder, found, floor, tolerance, method),
+        level,
     )
     if ratio == 1:
-        return float(values[0]), float(errors[0]), level
-    # Ŝ |k| = law |k| + correction/|k|² + …
-    correction = float(values[0] - values[1]) / ratio**2
-    value = float(values[1] + correction) / ratio
-    return value, float(errors.max() + 2 * abs(correction)) / ratio, level
+        return values[0], errors[0], level
+    # Ŝ |k| = law |k| + correction/|k|² + …, and so for derivatives.
+    correction = (values[0] - values[1]) / ratio**2
+    value = (values[1] + correction) / ratio
+    return value, (errors.max(axis=0) + 2 * np.abs(correction)) / ratio, level

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import ClassVar
 
 import numpy as np
 from scipy import sparse
@@ -36,7 +37,11 @@ class Generator:
     basis : Basis
     centre : float
         c, of ξ1; the mean of ξ2 is 0.
+    parameters : tuple of str
+        What it can be differentiated in.
     """
+
+    parameters: ClassVar[tuple[str, ...]] = ("noise", "belt_speed", "sigma1", "sigma2")
 
     model: LayDownModel
     basis: Basis
@@ -80,16 +85,23 @@ class Generator:
         cosine, sine, turn = basis.turned()
         lower1, lower2 = basis.lowering(0), basis.lowering(1)
         on_planes, on_circle = _identity(lower1.shape[0]), _identity(turn.shape[0])
-        place1 = (lower1 + lower1.T + self.centre / sigma1 * on_planes) / sigma1
-        place2 = (lower2 + lower2.T) / sigma2
+        force1, force2 = self._forces
         parts = (
             (lower1 / sigma1, cosine + self.speed * on_circle),
             (lower2 / sigma2, sine),
-            (place1, sine @ turn),
-            (-place2, cosine @ turn),
+            (force1, sine @ turn),
+            (-force2, cosine @ turn),
             (self.model.diffusivity * on_planes, turn @ turn),
         )
         return sum(basis.product(*part) for part in parts)
+
+    @property
+    def _forces(self) -> tuple[sparse.csr_array, sparse.csr_array]:
+        """Multiplication by ξ_i/σ_i², between the planes."""
+        lower1, lower2 = self.basis.lowering(0), self.basis.lowering(1)
+        sigma1, sigma2 = self.scales
+        off = self.centre / sigma1 * _identity(lower1.shape[0])
+        return (lower1 + lower1.T + off) / sigma1, (lower2 + lower2.T) / sigma2
 
     @cached_property
     def stationary(self) -> Array:
@@ -104,6 +116,36 @@ class Generator:
         g[0] = 1.0
         g[even] = splu(inner).solve(-source, trans="T")
         return g
+
+    @cached_property
+    def derivatives(self) -> tuple[sparse.csr_array, ...]:
+        """∂L in every parameter, of the same functions of ξ and α.
+
+        Polynomials about the same c and of the same scale σ stay what they are when the
+        parameters change, so that of σ_i only the force knows: of (ξ1/σ1²) sin α ∂_α it
+        leaves −2 ξ1/σ1³ sin α ∂_α.
+        """
+        basis, (sigma1, sigma2) = self.basis, self.scales
+        cosine, sine, turn = basis.turned()
+        lower1, (force1, force2) = basis.lowering(0), self._forces
+        on_planes, on_circle = _identity(lower1.shape[0]), _identity(turn.shape[0])
+        parts = (
+            (self.model.noise * on_planes, turn @ turn),
+            (lower1 / sigma1, on_circle),
+            (-2.0 / sigma1 * force1, sine @ turn),
+            (2.0 / sigma2 * force2, cosine @ turn),
+        )
+        return tuple(basis.product(*part) for part in parts)
+
+    @cached_property
+    def stationary_derivatives(self) -> Array:
+        """∂g in every parameter, (parameter, state): ∂g L = −g ∂L, its first one 0."""
+        even = self.basis.parity(1)
+        inner = splu(self.matrix[even][:, even].tocsc())
+        found = np.zeros((len(self.parameters), self.basis.size))
+        for row, change in zip(found, self.derivatives, strict=True):
+            row[even] = inner.solve(-(change.T @ self.stationary)[even], trans="T")
+        return found
 
     @property
     def mean(self) -> float:

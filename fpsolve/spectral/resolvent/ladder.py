@@ -76,14 +76,17 @@ class Ladder:
         number may agree by chance: in units of what is allowed, the error of each is
         twice the largest of all changes, and at least half of that of the step before.
 
+        The first column decides. Others, derivatives, have errors by the same rule in
+        units of their own, and none changes less than the first.
+
         Parameters
         ----------
         first : Basis
             Of level 0.
         compute : callable
-            Of a generator.
+            Of a generator an array (number, column).
         allowed : callable
-            Of what was computed, the largest errors.
+            Of what was computed, the largest errors, and the units of other columns.
         level : int
             To begin at.
         most : int
@@ -96,17 +99,19 @@ class Ladder:
             only where it is a remedy.
         """
         coarse = compute(self.generator(grown(first, level)))
-        reached, tolerance, before = np.inf, np.nan, 0.0
+        reached, tolerance, before = np.inf, np.nan, np.zeros(coarse.shape[1])
         while grown(first, level + 1).size <= most:
             level += 1
             fine = compute(self.generator(grown(first, level)))
             limit = allowed(fine)
-            change = float(np.max(np.abs(fine - coarse) / limit))
-            error = limit * max(SAFETY * change, MEMORY * before)
+            change = np.max(np.abs(fine - coarse) / limit, axis=0)
+            change = np.maximum(change, change[0])
+            error = limit * np.maximum(SAFETY * change, MEMORY * before)
             error = error + ROUNDING * np.abs(fine)
-            if (error <= limit).all():
+            if (error <= limit)[:, 0].all():
                 return fine, error, level
-            reached, tolerance = float(error.max()), float(limit[error.argmax()])
+            worst = error[:, 0].argmax()
+            reached, tolerance = float(error[worst, 0]), float(limit[worst, 0])
             coarse, before = fine, change
         remedy = f"raise `tolerance`: no truncation of {most} states is fine enough"
         if self.model.noise * min(self.scales) ** 0.5 < LOW_NOISE:

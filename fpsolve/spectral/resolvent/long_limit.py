@@ -89,9 +89,13 @@ def long_wave_limit(
     ToleranceError
         As `Ladder.climb`.
     """
-    form, errors, level = ladder.climb(
-        first, long_wave_form, lambda found: tolerance * np.abs(found), most=most
+    forms, errors, level = ladder.climb(
+        first,
+        lambda generator: long_wave_form(generator)[:, None],
+        lambda found: tolerance * np.abs(found),
+        most=most,
     )
+    form, errors = forms[:, 0], errors[:, 0]
     reach, generator = reach_of(ladder), ladder.generator(grown(first, level))
     return LongWaveLimit(form, errors, quartic_form(generator, form, reach), reach)
 

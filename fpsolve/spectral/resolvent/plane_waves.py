@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 from numpy.polynomial.hermite_e import hermegauss
@@ -12,7 +13,14 @@ from fpsolve._support.arrays import Array, Complex
 from fpsolve.spectral.bases.hermite_functions import hermite_polynomials
 from fpsolve.spectral.resolvent.generator import Generator
 
-__all__ = ["characteristic", "multiplied", "plane_wave", "wave_vector"]
+__all__ = [
+    "against_wave",
+    "characteristic",
+    "multiplied",
+    "plane_wave",
+    "wave_derivative",
+    "wave_vector",
+]
 
 # Nodes of Gauss beyond the degree, per squared and per plain wave number.
 EXTRA, PER_SQUARE, PER_WAVE = 16, 0.5, 4.0
@@ -44,6 +52,14 @@ def plane_wave(generator: Generator, k: WaveVector) -> Complex:
     return wave
 
 
+def wave_derivative(generator: Generator, k2: float) -> Complex:
+    """∂/∂k2 of the coefficients of e^{ik2 ξ2}, k2 ≠ 0: (n/q − q) σ2 times them."""
+    _, q = wave_vector(generator, (0.0, k2))
+    _, n, _ = generator.basis.states
+    wave = plane_wave(generator, (0.0, k2))
+    return np.asarray(wave * (n / q - q) * generator.scales[1])
+
+
 def characteristic(generator: Generator, k: WaveVector) -> complex:
     """E e^{ik·(ξ − c)} in the stationary law."""
     return complex(generator.stationary @ plane_wave(generator, k))
@@ -51,11 +67,19 @@ def characteristic(generator: Generator, k: WaveVector) -> complex:
 
 def multiplied(generator: Generator, k: WaveVector) -> Complex:
     """E e^{−ik·(ξ − c)} f in the stationary law, for every state f of the basis."""
+    return against_wave(generator, k, generator.stationary)
+
+
+def against_wave(generator: Generator, k: WaveVector, of: NDArray[Any]) -> Complex:
+    """Coefficients of e^{−ik·(ξ − c)} times a function: a symmetric matrix times `of`.
+
+    So it is also a functional after the multiplication, state by state.
+    """
     basis = generator.basis
     m, n, harmonic = basis.states
     n_planes, n_harmonics = basis.degree + 1, 2 * basis.harmonics + 1
-    table = np.zeros((n_planes, n_planes, n_harmonics))
-    table[m, n, harmonic] = generator.stationary
+    table = np.zeros((n_planes, n_planes, n_harmonics), of.dtype)
+    table[m, n, harmonic] = of
     along, across = (between(-q, basis.degree) for q in wave_vector(generator, k))
     half = along @ table.reshape(n_planes, -1)
     half = half.reshape(n_planes, n_planes, n_harmonics)
