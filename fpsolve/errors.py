@@ -11,7 +11,7 @@ import copyreg
 import inspect
 import math
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import MISSING, dataclass, field, fields
 from typing import Any, TypeVar, dataclass_transform
 
@@ -42,6 +42,7 @@ __all__ = [
     "RunInterrupted",
     "SteadyStateError",
     "ToleranceError",
+    "UnreachableTargetError",
 ]
 
 
@@ -439,6 +440,28 @@ class ToleranceError(FpsolveError):
         if math.isfinite(self.reached):
             return {"known": f"the error is estimated at {self.reached:.2g}"}
         return {"known": "there is no estimate of the error yet"}
+
+
+@stated
+class UnreachableTargetError(FpsolveError):
+    """No process within the bounds was found whose web is as even as asked for."""
+
+    zone: float = said("Side of the zones that are farthest from their target.")
+    target: float = said("Largest CV allowed of them.")
+    reached: float = said("The smallest CV found.")
+    error: float = said("Bound of the error of this one.")
+    place: Mapping[str, float] = said(
+        "Free parameters where it was found.", "mapping of str to float"
+    )
+    _says = (
+        "`target` CV <= {target:g} of zones of {zone:g} m cannot be met within "
+        "`bounds`: the best that was found is {reached:.4g} ± {error:.1g}, at "
+        "{where}; allow more, widen the bounds or free another parameter."
+    )
+
+    def _texts(self) -> dict[str, str]:
+        pairs = self.place.items()
+        return {"where": ", ".join(f"{name} = {value:.4g}" for name, value in pairs)}
 
 
 @stated

@@ -23,7 +23,7 @@ __all__ = ["OWN", "declared", "is_own"]
 _TEXTS = (
     "Conventions", "title", "equation", "status", "message", "date_created", "date",
     "fpsolve_kind", "seed", "method", "verdict", "formula", "command", "configuration",
-    "positions",
+    "positions", "cost",
 )  # fmt: skip
 _NUMBERS = (
     "ds", "s_start", "false_alarm", "gap", "gap_error", "essential", "noise", "radius",

@@ -13,6 +13,7 @@ import typer
 
 from fpsolve.cli.check import check
 from fpsolve.cli.compare import compare
+from fpsolve.cli.design import design
 from fpsolve.cli.energy import energy
 from fpsolve.cli.info import info
 from fpsolve.cli.limits import limits
@@ -49,6 +50,7 @@ _COMMANDS: dict[Callable[..., None], str] = {
     limits: "limits small-noise --quick",
     web: "web --out results",
     predict: "predict --noise 2 --belt-speed 0.2 --spacing 0.5",
+    design: "design --out results",
     plot: "plot results/laydown.nc --movie",
     report: "report results/laydown.nc",
     rerun: "rerun results/laydown.nc --out again",

@@ -127,6 +127,13 @@ CAPTIONS = {
         "Distances against R; thin lines: the slope that is derived.",
         "Distances to the limit against the relaxation length, logarithmic",
     ),
+    "web-design/design": (
+        "Left: CV of zones against throughput along the front, or along the search "
+        "where there is none; circle: start, star: optimum, bars: webs laid there, two "
+        "standard errors, dotted: bounds. Right: per cent of CV per per cent of a "
+        "parameter.",
+        "Curves of the variation against throughput, and bars of its sensitivities",
+    ),
     "web-homogeneity/zones": (
         "CV of square zones against their side; lines: predicted; markers: laid webs "
         "with standard errors.",

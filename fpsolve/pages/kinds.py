@@ -35,6 +35,7 @@ PAGES: dict[str, str | Callable[[Any, str], Section]] = {
     "large-noise": "fpsolve.pages.limits:large_section",
     "white-noise": "fpsolve.pages.white_noise:white_section",
     "web-homogeneity": "fpsolve.pages.homogeneity:section",
+    "web-design": "fpsolve.pages.design:section",
     "small-noise": "fpsolve.pages.limits:small_section",
     "small-noise-spectrum": "fpsolve.pages.limits:spectrum_section",
     "energy-tables": "fpsolve.pages.energy:section",

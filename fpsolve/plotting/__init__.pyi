@@ -2,6 +2,7 @@
 
 from .angle import plot_angle as plot_angle
 from .comparison import plot_cross_check as plot_cross_check
+from .design import plot_web_design as plot_web_design
 from .differences import plot_comparison as plot_comparison
 from .energy import plot_energy_coefficients as plot_energy_coefficients
 from .energy import plot_energy_eigenfunctions as plot_energy_eigenfunctions

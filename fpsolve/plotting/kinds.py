@@ -10,6 +10,7 @@ from fpsolve._support.declared import declared
 from fpsolve.paths.result import Paths
 from fpsolve.plotting.angle import plot_angle
 from fpsolve.plotting.comparison import plot_cross_check
+from fpsolve.plotting.design import plot_web_design
 from fpsolve.plotting.energy import (
     plot_energy_coefficients,
     plot_energy_eigenfunctions,
@@ -172,6 +173,7 @@ FIGURES: dict[str, Callable[[Any], Figures]] = {
     "large-noise": each(distances=(plot_large_noise, known("distance"))),
     "white-noise": each(distances=(plot_white_noise, known("distance"))),
     "web-homogeneity": each(zones=(plot_web_homogeneity, known("z"))),
+    "web-design": each(design=(plot_web_design, always)),
     "small-noise": each(distances=(plot_small_noise, known("distance"))),
     "small-noise-spectrum": each(spectrum=(plot_small_noise_spectrum, always)),
     "energy-tables": of_energy_tables,

@@ -158,6 +158,10 @@ KINDS = {
                    "predicted_error", "simulated", "standard_error", "z"),
         attributes=(*_POTENTIAL, "positions", "n_webs", "pixel", "tolerance"),
     ),
+    "web-design": Kind(
+        "designs of webs", "fpsolve.studies.design.design_web:design_web",
+        "fpsolve.studies.design.result:WebDesign",
+    ),
     "small-noise": Kind(
         "distances to the limit of small noise",
         "fpsolve.studies.limits.small_noise:small_noise_limit", counts="cases",

@@ -8,6 +8,8 @@ from .agreement.outcome import AgreementTest as AgreementTest
 from .constants.relaxation_slopes import Slope as Slope
 from .constants.relaxation_slopes import gap_slope as gap_slope
 from .constants.relaxation_slopes import variance_slope as variance_slope
+from .design.design_web import design_web as design_web
+from .design.result import WebDesign as WebDesign
 from .ergodicity.averages import ErgodicFit as ErgodicFit
 from .ergodicity.averages import ergodic_averages as ergodic_averages
 from .ergodicity.averages import fit_ergodic_error as fit_ergodic_error

@@ -9,7 +9,13 @@ from pages import FENCE, ROOT, all_pages, fences, name_of
 from typer.testing import CliRunner
 
 from fpsolve.cli import app
-from fpsolve.cli.config import PathsConfig, RunConfig, WebConfig, load_config
+from fpsolve.cli.config import (
+    DesignConfig,
+    PathsConfig,
+    RunConfig,
+    WebConfig,
+    load_config,
+)
 
 COMMANDS = typer.main.get_command(app)
 # Whichever click typer is made of, its own or the installed one.
@@ -133,7 +139,7 @@ def configurations():
     ]
     _, first = blocks[0]
     for place, tables in blocks:
-        special = {"paths": PathsConfig, "web": WebConfig}
+        special = {"paths": PathsConfig, "web": WebConfig, "design": DesignConfig}
         kind = next((special[name] for name in tables if name in special), RunConfig)
         physics = {"potential", "model", "curve"} if "process" in tables else set()
         rest = {

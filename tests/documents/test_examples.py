@@ -27,8 +27,8 @@ TEST_COMMAND = (
 QUICK = ("README.md", "docs/checkpoints.md", "docs/benchmarks.md")
 # Pages that compute for ten seconds and more, once a night.
 LONG = (
-    "docs/choosing.md", "docs/homogeneity.md", "docs/limits.md", "docs/nozzles.md",
-    "docs/webs.md",
+    "docs/choosing.md", "docs/design.md", "docs/homogeneity.md", "docs/limits.md",
+    "docs/nozzles.md", "docs/webs.md",
 )  # fmt: skip
 
 

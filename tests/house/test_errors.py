@@ -121,6 +121,12 @@ EXAMPLES = [
         "tolerance 1e-08 not reached: the error is estimated at 0.001; start closer "
         "to the equilibrium.",
     ),
+    (
+        errors.UnreachableTargetError(0.01, 0.05, 0.0625, 1e-4, {"noise": 14.0}),
+        "`target` CV <= 0.05 of zones of 0.01 m cannot be met within `bounds`: the "
+        "best that was found is 0.0625 ± 0.0001, at noise = 14; allow more, widen the "
+        "bounds or free another parameter.",
+    ),
     (errors.ConfigurationError("no section `grid`."), "no section `grid`."),
     (
         errors.FileFormatError("run.nc", "it has no density"),

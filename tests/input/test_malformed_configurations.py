@@ -4,10 +4,17 @@ import pytest
 from command_line import files
 from malformed.cases import assert_said, parametrised
 from malformed.configurations import ABSURD, PATHS_FILES, RUN, RUN_FILES, written
+from malformed.designs import DESIGN_FILES
 from malformed.webs import ABSURD_WEBS, WEB_FILES
 from refusals import assert_one_line, everything
 
-from fpsolve.cli.config import PathsConfig, RunConfig, WebConfig, load_config
+from fpsolve.cli.config import (
+    DesignConfig,
+    PathsConfig,
+    RunConfig,
+    WebConfig,
+    load_config,
+)
 from fpsolve.errors import ConfigurationError, MemoryLimitError
 
 
@@ -52,6 +59,11 @@ def refused(case, kind, words, fpsolve, tmp_path):
 @parametrised(PATHS_FILES)
 def test_wrong_paths_cost_one_line_and_no_file(case, fpsolve, tmp_path):
     refused(case, PathsConfig, ["paths"], fpsolve, tmp_path)
+
+
+@parametrised(DESIGN_FILES)
+def test_a_wrong_design_costs_one_line_and_no_file(case, fpsolve, tmp_path):
+    refused(case, DesignConfig, ["design"], fpsolve, tmp_path)
 
 
 @parametrised(WEB_FILES)

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import result_files
 import xarray as xr
+from known_webs import KnownWeb
 
 import fpsolve as fp
 from fpsolve import plotting, studies
@@ -21,6 +22,7 @@ from fpsolve.pages.page import report_text
 from fpsolve.plotting.files import possible_figures
 from fpsolve.plotting.kinds import FIGURES
 from fpsolve.results.kinds import KINDS, from_xarray, kind_of, named
+from fpsolve.studies.design import predictions
 
 QUADRATIC = fp.QuadraticPotential()
 REST = fp.LayDownModel(QUADRATIC, 1.0)
@@ -155,6 +157,15 @@ MAKERS = {
         QUADRATIC, [2.0], [0.5], [0.5], zones=[0.5, 2.0], n_webs=2, tolerance=0.05,
         workers=0,
     ),
+    "web-design": lambda: studies.design_web(
+        fp.Process(5e-3, 5e-3, 25.0, 0.1, 50.0), {0.01: 0.0155, 0.02: 0.0155},
+        spacing=2e-3, titer=1e-4, free=["noise", "speed_ratio", "spacing"],
+        bounds={"noise": (15.0, 40.0), "speed_ratio": (0.05, 0.2)}, front=2, n_webs=2,
+    ),
+    "web-design, laying none": lambda: studies.design_web(
+        fp.Process(5e-3, 5e-3, 25.0, 0.1, 50.0), [0.01], spacing=2e-3, titer=1e-4,
+        free=["noise"], bounds={"noise": (15.0, 40.0)}, n_webs=0,
+    ),
     "small-noise": lambda: studies.small_noise_limit(
         QUADRATIC, [0.8], belt_speed_scales=[0.0], slow_length=0.25, n_paths=50,
         quick=True,
@@ -170,6 +181,14 @@ MAKERS = {
         QUADRATIC, [1.0], s_end=2.0, n_paths=40, seed=1
     ),
 }  # fmt: skip
+
+
+@pytest.fixture(scope="module", autouse=True)
+def known_webs():
+    """Designs of webs known in closed form, since predictions take seconds each."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(predictions, "predict_web", KnownWeb())
+        yield
 
 
 @cache
@@ -300,6 +319,7 @@ NUMBERS = {
     "hydrodynamic-paths": lambda found: f"{found.mean()[0][-1, 0]:.5g}",
     "spectrum": lambda found: f"{found.gap:.12g}",
     "web": lambda found: f"{found.mean_length_density():.6g}",
+    "web-design": lambda found: f"{found.cv[0]:.5g}",
     "averages": lambda found: f"{float(found['expectation'][0]):.6g}",
     "small-noise-spectrum": lambda found: f"{float(found['limit'][0]):.6g}",
 }

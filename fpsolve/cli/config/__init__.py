@@ -1,7 +1,9 @@
-"""Runs, samplings and webs described in TOML files."""
+"""Runs, samplings, webs and designs described in TOML files."""
 
+from fpsolve.cli.config.design import DesignConfig
 from fpsolve.cli.config.paths import PathsConfig, PathsProblem
 from fpsolve.cli.config.reading import (
+    DESIGN_EXAMPLE,
     EXAMPLES,
     PATHS_EXAMPLE,
     WEB_EXAMPLE,
@@ -14,9 +16,11 @@ from fpsolve.cli.config.run import Problem, RunConfig
 from fpsolve.cli.config.web import WebConfig, WebProblem
 
 __all__ = [
+    "DESIGN_EXAMPLE",
     "EXAMPLES",
     "PATHS_EXAMPLE",
     "WEB_EXAMPLE",
+    "DesignConfig",
     "PathsConfig",
     "PathsProblem",
     "Problem",

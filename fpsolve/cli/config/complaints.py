@@ -9,6 +9,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from fpsolve.cli.config.description import Description
+from fpsolve.cli.config.design import DesignConfig
 from fpsolve.cli.config.paths import PathsConfig
 from fpsolve.cli.config.run import RunConfig
 from fpsolve.cli.config.sections import kinds_of
@@ -21,6 +22,7 @@ _COMMANDS: dict[type[Description], str] = {
     RunConfig: "fpsolve run",
     PathsConfig: "fpsolve paths",
     WebConfig: "fpsolve web",
+    DesignConfig: "fpsolve design",
 }
 # A section of one name is the same in all of them.
 _SECTIONS = {

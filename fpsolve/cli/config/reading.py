@@ -17,6 +17,7 @@ from fpsolve.cli.config.run import RunConfig
 from fpsolve.errors import ConfigurationError
 
 __all__ = [
+    "DESIGN_EXAMPLE",
     "EXAMPLES",
     "PATHS_EXAMPLE",
     "WEB_EXAMPLE",
@@ -28,10 +29,12 @@ __all__ = [
 
 T = TypeVar("T", bound=Description)
 
-# What `fpsolve run` can solve, `fpsolve paths` samples, and `fpsolve web` lays.
+# What `fpsolve run` can solve, `fpsolve paths` samples, `fpsolve web` lays, and
+# `fpsolve design` improves.
 EXAMPLES = ("laydown", "spunbond")
 PATHS_EXAMPLE = "fibres"
 WEB_EXAMPLE = "web"
+DESIGN_EXAMPLE = "design"
 
 
 @overload
@@ -51,7 +54,7 @@ def load_config(
     ----------
     path : str or os.PathLike
     kind : type, optional
-        RunConfig, PathsConfig for sampled paths, or WebConfig for a web.
+        RunConfig, PathsConfig for sampled paths, WebConfig for a web, or DesignConfig.
 
     Raises
     ------
@@ -126,16 +129,16 @@ def example_path(name: str) -> Path:
 
     Parameters
     ----------
-    name : {"laydown", "spunbond", "fibres", "web"}
-        B = ‖ξ‖²/2 with A = 1, a spunbond process in SI units, paths on a belt, or the
-        web of a spunbond process.
+    name : {"laydown", "spunbond", "fibres", "web", "design"}
+        B = ‖ξ‖²/2 with A = 1, a spunbond process in SI units, paths on a belt, the
+        web of a spunbond process, or what is asked of its design.
 
     Raises
     ------
     ConfigurationError
         If there is no such example.
     """
-    if name not in (*EXAMPLES, PATHS_EXAMPLE, WEB_EXAMPLE):
+    if name not in (*EXAMPLES, PATHS_EXAMPLE, WEB_EXAMPLE, DESIGN_EXAMPLE):
         raise ConfigurationError(
             f"`example` must be one of {', '.join(EXAMPLES)}, got {name!r}"
             f"{suggestion(name, EXAMPLES)}"

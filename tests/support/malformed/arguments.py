@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from .answers import FIGURES, INTEROP, REDUCED, SPECTRA, STUDIES
+from .designs import DESIGNS
 from .models import GRIDS, MODELS, PROCESSES
 from .runs import RUNS, SAMPLES, SCHEMES, STARTS
 
 ARGUMENTS = [
     *MODELS, *GRIDS, *STARTS, *SCHEMES, *RUNS, *SAMPLES, *SPECTRA, *REDUCED,
-    *PROCESSES, *STUDIES, *INTEROP, *FIGURES,
+    *PROCESSES, *STUDIES, *DESIGNS, *INTEROP, *FIGURES,
 ]  # fmt: skip

@@ -116,6 +116,10 @@ WEB = [
     row("web --threads 9999", "got 9999", "must be at most"),
 ]
 PREDICT = [
+    row("design none.toml", "got `none.toml`", "must be an existing TOML file"),
+    row("design --front 1", "got 1", "0 or at least 2"),
+    row("design --n-webs 1", "got 1", "0 or at least 2"),
+    row("design --out notes.txt", "got `notes.txt`", "`--out` must be a folder"),
     row("predict none.toml", "got `none.toml`", "must be an existing TOML file"),
     row("predict --spacing nan", "got nan", "`spacing` must be positive"),
     row("predict --positions hexagonal", "got 'hexagonal'", "`positions` must be"),
