@@ -91,5 +91,5 @@ def test_the_packaged_example_is_a_design_in_si_units():
     # The base weight that the packaged web has, 3 g/m².
     weight = asked["titer"] / (process.speed_ratio * asked["spacing"])
     assert weight == pytest.approx(3.0)
-    assert asked["target"] == [[0.01, 0.06]]
+    assert asked["target"] == [[0.01, 0.07]]
     assert set(asked["bounds"]) == set(asked["free"])

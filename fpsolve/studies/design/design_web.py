@@ -51,7 +51,8 @@ def design_web(
     Parameters
     ----------
     process : Process
-        Where the search begins, or the nearest point within the bounds.
+        Where the search begins, or the nearest point within the bounds; of the basic
+        model, without a `relaxation_length`.
     target : float, sequence of float, or mapping of float to float
         Sides of square zones in metres, whose mean of log CV is minimised; or with the
         largest CV of each (also as pairs), where `cost` is minimised.

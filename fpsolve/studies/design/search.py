@@ -65,7 +65,8 @@ def searched(goal: Goal, space: Space, predicted: Predictions, start: Array) -> 
     )  # fmt: skip
     # Rounding of the line search may leave the space by a last digit.
     y = space.nearest(np.array(found.x[:n]))
-    return Found(y, [*iterates, y])
+    last = [] if np.array_equal(y, iterates[-1]) else [y]
+    return Found(y, [*iterates, *last])
 
 
 def _first(goal: Goal, predicted: Predictions, start: Array) -> Array:

@@ -86,6 +86,11 @@ def task_of(
 def checked_start(process: Any, spacing: Any, titer: Any) -> Settings:
     """The settings from which a search begins."""
     check_kind("process", process, Process)
+    if process.relaxation_length is not None:
+        raise ValueError(
+            "`process` must have no `relaxation_length`, got "
+            f"{process.relaxation_length:g}; of smooth fibres CV has no slopes yet."
+        )
     check_model(process.model)
     if not abs(process.speed_ratio) > 0:
         raise ValueError(
