@@ -69,8 +69,8 @@ CAPTIONS = {
         "Map of the stationary density and curve over the angle",
     ),
     "mean-pattern/pattern": (
-        "Expected length of fibre per area, relative to its mean, on two by two cells "
-        "of the pattern.",
+        "Expected length of fibre per area, relative to its mean, on a square of "
+        "several cells of the pattern.",
         "Map of the expected length of fibre per area",
     ),
     "periodic-state/phases": (

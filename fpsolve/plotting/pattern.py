@@ -21,8 +21,9 @@ __all__ = ["plot_pattern"]
 # stands above and below it, in inches.
 POINTS, ACROSS, AROUND, FOOT = 240, 5.6, 0.35, 0.5
 IN_A_ROW = 2
-# Cells that are shown in each direction: enough to see that they are repeated.
-N_CELLS = 2
+# Cells that are shown: enough to see that they are repeated, and as many as its points
+# can tell apart.
+FEWEST_CELLS, MOST_CELLS = 2, 20
 
 
 def plot_pattern(
@@ -38,16 +39,17 @@ def plot_pattern(
     patterns : MeanPattern or sequence of MeanPattern
         Drawn two by two.
     length, width : float, optional
-        Of the part that is shown, along the belt and across it; by default two cells of
-        the first pattern.
+        Of the part that is shown, along the belt and across it; by default those of a
+        square that holds two cells of the first pattern, but not more than 20.
     titles : sequence of str
         One for every pattern.
     """
     several = [patterns] if isinstance(patterns, MeanPattern) else list(patterns)
     for one in several:
         check_kind("patterns", one, MeanPattern, "it is what `mean_pattern` returns")
-    length = N_CELLS * several[0].length if length is None else length
-    width = N_CELLS * several[0].width if width is None else width
+    side = side_of(several[0].length, several[0].width)
+    length = side if length is None else length
+    width = side if width is None else width
     length, width = check_positive("length", length), check_positive("width", width)
     x1 = np.linspace(0.0, length, POINTS)
     x2 = np.linspace(0.0, width, max(2, round(POINTS * width / length)))
@@ -75,3 +77,8 @@ def plot_pattern(
             axes.set_ylabel(r"$x_2$")
         add_colour_bar(figure, image, list(panels.flat)).set_label(r"$v\,d\;E\,m$")
     return figure
+
+
+def side_of(length: float, width: float) -> float:
+    """Of a square that shows how cells of this size are repeated."""
+    return min(FEWEST_CELLS * max(length, width), MOST_CELLS * min(length, width))

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fpsolve._support.arrays import Array, check_finite_numbers
+from fpsolve.plotting.logarithmic import plain_numbers
 from fpsolve.plotting.style import COLOURS, COLUMN, drawing
 from fpsolve.plotting.web_image import WebImage, holds_fibre, image_of, round_length
 from fpsolve.web.statistics.estimate import Estimates
@@ -22,6 +23,8 @@ __all__ = ["holds_zones", "plot_rose", "plot_variation", "zones_for"]
 
 # Zones across the shorter side of a web, at least, for a curve with errors.
 _FEWEST_ZONES = 4
+# Of ticks in a decade, and the ratio above which only powers of ten are told.
+_DIGITS, _RATIO = (1, 2, 5), 300.0
 
 
 def plot_variation(
@@ -68,6 +71,9 @@ def plot_variation(
         )  # fmt: skip
         axes.set(xscale="log", yscale="log", ylabel="coefficient of variation")
         axes.set_xlabel(image.label("side of the zones").replace(" direction", ""))
+        # 1, 2, 5 of every decade, as the sides that are chosen by default.
+        for axis in (axes.xaxis, axes.yaxis):
+            plain_numbers(axis, _DIGITS, _RATIO)
         axes.legend(loc="best")
     return figure
 

@@ -81,6 +81,7 @@ def _draw_map(axes: Axes, found: PowerSpectrum, image: WebImage) -> None:
     )  # fmt: skip
     bar = axes.figure.colorbar(drawn, ax=axes, fraction=0.05, aspect=25, pad=0.02)
     bar.outline.set_linewidth(0.6)
+    bar.set_label(_relative_power(image))
 
 
 def _draw_sections(axes: Axes, found: PowerSpectrum, image: WebImage) -> None:
@@ -107,7 +108,7 @@ def _draw_sections(axes: Axes, found: PowerSpectrum, image: WebImage) -> None:
               label=r"$2/\|k\|$")  # fmt: skip
     axes.set(
         xscale="log", yscale="log", xlabel=_wave_number(image, r"\|k\|"),
-        ylabel=r"$P/\langle m\rangle$" + _in(image, ""),
+        ylabel=_relative_power(image),
     )  # fmt: skip
     # Labels between powers of ten run into each other.
     axes.xaxis.set_minor_formatter(NullFormatter())
@@ -116,6 +117,10 @@ def _draw_sections(axes: Axes, found: PowerSpectrum, image: WebImage) -> None:
 
 def _wave_number(image: WebImage, name: str) -> str:
     return f"${name}$" + _in(image, "$^{-1}$")
+
+
+def _relative_power(image: WebImage) -> str:
+    return r"$P/\langle m\rangle$" + _in(image, "")
 
 
 def _in(image: WebImage, power: str) -> str:

@@ -1,5 +1,7 @@
 """Figures of periodic densities and of the patterns that they lay down."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -33,9 +35,10 @@ def test_patterns_are_drawn_two_by_two_on_one_scale():
 
 def test_one_pattern_needs_no_list_and_sizes_are_checked():
     assert len(plotting.plot_pattern(waves(0.2), 4.0, 2.0).axes) == 2
-    # By default two cells in each direction.
-    drawn = plotting.plot_pattern(waves(0.2)).axes[0]
-    assert (drawn.get_xlim(), drawn.get_ylim()) == ((0.0, 4.0), (0.0, 2.0))
+    # By default a square that holds two cells, or twenty of their shorter side.
+    for pattern, side in ((waves(0.2), 4.0), (replace(waves(0.2), width=0.1), 2.0)):
+        drawn = plotting.plot_pattern(pattern).axes[0]
+        assert (drawn.get_xlim(), drawn.get_ylim()) == ((0.0, side), (0.0, side))
     with pytest.raises(ValueError, match="`length` must be positive"):
         plotting.plot_pattern(waves(0.2), np.nan, 2.0)
     with pytest.raises(TypeError, match="`patterns` must be a MeanPattern, got 3"):

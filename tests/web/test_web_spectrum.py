@@ -92,15 +92,22 @@ def test_strips_across_the_machine_are_those_of_the_web_turned():
     assert turned.direction == "cross"
 
 
-def test_errors_cover_amplitude_and_period():
+def test_errors_cover_amplitude_period_and_share():
     generator = np.random.default_rng(7)
     webs = [striped(generator, 0.06, shape=(60, 100)) for _ in range(60)]
     found = [strips(web, 1.0) for web in webs]
-    for name, truth in (("amplitude", 0.06), ("period", 7.3)):
+    # The share is of the profile of 100 columns, with their noise.
+    wave = np.var(0.06 * np.cos(2 * np.pi * (np.arange(60) + 0.5) / 7.3))
+    share = wave / (wave + 0.09 / 100 * 59 / 60)
+    for name, truth in (("amplitude", 0.06), ("period", 7.3), ("share", share)):
         intervals = [getattr(one, name).interval() for one in found]
         inside = np.mean([low <= truth <= high for low, high in intervals])
         # Of 60, 57 ± 1.7 are expected.
         assert inside > 0.95 - 4 * 0.028
+    # And no more than that: 60 webs know a scatter to a tenth; the jackknife of the
+    # variance of pure noise is √2 too large.
+    errors = [one.share.standard_error for one in found]
+    assert 0.7 < np.mean(errors) / np.std([one.share for one in found]) < 1.7
 
 
 @pytest.mark.parametrize("strength", [0.0, 1.0, 2.0])

@@ -12,7 +12,7 @@ from fpsolve.web.statistics.blocks import FEWEST_BLOCKS, choose_blocks
 from fpsolve.web.statistics.estimate import Estimate
 from fpsolve.web.statistics.influence import influence
 
-__all__ = ["estimate", "jackknife"]
+__all__ = ["estimate", "jackknife", "variance_and_bias"]
 
 
 def jackknife(
@@ -44,17 +44,29 @@ def jackknife(
     ----------
     [BMVL99]_.
     """
+    value, variance, bias = variance_and_bias(function, sums, sizes)
+    return value, np.sqrt(variance + bias**2)
+
+
+def variance_and_bias(
+    function: Callable[[Array], Array], sums: Array, sizes: Array
+) -> tuple[Array, Array, Array]:
+    """θ̂, the variance of the pseudo-values, and θ̂ - θ̃; arguments as for `jackknife`.
+
+    The bias is that against an endless web. Of what is defined for this one, as the
+    variance of a profile with its noise, it is none.
+    """
     total, size = sums.sum(axis=0), sizes.sum()
     value = np.asarray(function(total / size))
     n = len(sizes)
     if n < FEWEST_BLOCKS:
-        return value, np.full(value.shape, np.nan)
+        return value, np.full(value.shape, np.nan), np.full(value.shape, np.nan)
     without = np.asarray(function((total - sums) / (size - sizes)[:, None]))
     shares = (size / sizes).reshape(-1, *[1] * value.ndim)
     pseudo = shares * value - (shares - 1.0) * without
     corrected = np.sum(pseudo / shares, axis=0)
     variance = np.mean((pseudo - corrected) ** 2 / (shares - 1.0), axis=0)
-    return value, np.sqrt(variance + (value - corrected) ** 2)
+    return value, variance, value - corrected
 
 
 def estimate(

@@ -14,7 +14,7 @@ from fpsolve.web.statistics.blocks import FEWEST_BLOCKS, Blocks, cut
 from fpsolve.web.statistics.correlation import memory
 from fpsolve.web.statistics.estimate import Estimate
 from fpsolve.web.statistics.fields import check_density
-from fpsolve.web.statistics.jackknife import jackknife
+from fpsolve.web.statistics.jackknife import variance_and_bias
 
 __all__ = ["Strips", "strips"]
 
@@ -32,6 +32,8 @@ _NEIGHBOURS = 4
 _SHORTENED = 4.0
 # Halvings of the distance to the best frequency: 1e-6 of what is resolved.
 _HALVINGS = 20
+# Place of the share among the numbers that are measured.
+_SHARE = 2
 
 
 @dataclass(frozen=True)
@@ -47,7 +49,8 @@ class Strips:
         stretches, or √(a² + δ) - a with the deviation δ² = N² + 2 a² N of |c|², if
         that is larger: where nothing is left of a, stretches agree about it.
     share : Estimate
-        a²/2 over CV² of the profile; its error is at least that due to δ.
+        a²/2 over CV² of the profile, the noise of this web in it; its error is at least
+        that due to δ.
     p_value : float
         Probability that noise alone has a wave this strong among all that were
         looked at; NaN where there are fewer than 4 stretches.
@@ -122,9 +125,12 @@ def strips(
     sizes, inflation = blocks.sizes, blocks.inflation
     means = profiles / sizes[:, None]
     noise, p_value = _against_noise(means, search, start, inflation)
-    values, errors = jackknife(
+    values, variances, biases = variance_and_bias(
         lambda means: search.measured(means, start, noise), profiles, sizes
     )
+    # The share is that of the profile of this web, with its noise.
+    biases[_SHARE] = 0.0
+    errors = np.sqrt(variances + biases**2)
     least = _errors_of_noise(values, noise, density.mean(axis=1))
     errors = np.maximum(math.sqrt(inflation) * errors, least)
     found = [
