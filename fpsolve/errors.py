@@ -425,9 +425,18 @@ class EquilibriumError(FpsolveError):
     )
 
 
+class _Best:
+    """What a search that fell short leaves; no argument of an error."""
+
+    solution: Any = None
+
+
 @stated
-class ToleranceError(FpsolveError):
-    """A result could not be computed as accurately as asked for."""
+class ToleranceError(_Best, FpsolveError):
+    """A result could not be computed as accurately as asked for.
+
+    A run of `solve` leaves the best that it found as `.solution`, others None.
+    """
 
     reached: float = said("Error estimated for the best result that was possible.")
     tolerance: float = said("Error asked for.")

@@ -42,6 +42,8 @@ SCRIPTS = (
     "performance/reduced.py",
     "performance/smooth_density.py",
     "performance/webs.py",
+    "performance/levels.py",
+    "performance/shifts.py",
 )
 # For every night: kills by the dozen, times that a shared machine only blurs, and
 # claims that tests hold as well, on other models, shorter arclengths or fewer paths.
@@ -72,6 +74,8 @@ NIGHTLY = {
     "performance/reduced.py": "",
     "performance/smooth_density.py": "",
     "performance/webs.py": "",
+    "performance/levels.py": "",
+    "performance/shifts.py": "",
 }
 
 

@@ -149,7 +149,8 @@ def _provenance_type() -> Any:
     return _entries("Provenance", {
         "versions": _TEXTS_BY_NAME, "environment": _environment_type(), "date": str,
         "wall_seconds": float, "cpu_seconds": float, "n_steps": _count(),
-        "extrapolated": bool, "configuration": str, "suggested": _TEXTS_BY_NAME,
+        "extrapolated": bool, "levels": _count(), "configuration": str,
+        "suggested": _TEXTS_BY_NAME,
         "initial_description": _TABLE, "model_description": str, "equation": str,
     })  # fmt: skip
 

@@ -14,7 +14,7 @@ OVERHEAD = 64 * 2**20
 
 
 def required_memory(
-    nbytes: int, n_arrays: float, n_saved: int, extrapolate: bool = False
+    nbytes: int, n_arrays: float, n_saved: int, n_passes: int = 1
 ) -> int:
     """Bytes of a run: arrays of the scheme and saved densities, plus an overhead.
 
@@ -26,11 +26,10 @@ def required_memory(
         Densities the scheme keeps alive.
     n_saved : int
         Densities that are saved.
-    extrapolate : bool
-        Two runs keep their saved densities.
+    n_passes : int
+        Runs that are extrapolated; each keeps its saved densities.
     """
-    kept = n_saved * (2 if extrapolate else 1)
-    return int(nbytes * (n_arrays + kept)) + OVERHEAD
+    return int(nbytes * (n_arrays + n_saved * n_passes)) + OVERHEAD
 
 
 def check_memory(required: int, limit: int | None = None, *remedy: str) -> None:

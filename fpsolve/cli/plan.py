@@ -111,8 +111,19 @@ def _cells(grid: Any) -> str:
 def _steps(arguments: dict[str, Any]) -> str:
     start, end = arguments["s_span"]
     ds = arguments["ds"]
-    also = " and ds/2, extrapolated" if arguments["extrapolate"] else ""
+    also = _levels(arguments["extrapolate"], arguments.get("tolerance"))
     return f"s from {start:g} to {end:g}, ds = {ds:g}{also} ({_source(ds)})"
+
+
+def _levels(extrapolate: bool | int, tolerance: float | None) -> str:
+    """Say which shorter steps there are."""
+    if tolerance is not None:
+        return f", ds/2, … until the step leaves {tolerance:g}, extrapolated"
+    if not extrapolate:
+        return ""
+    if extrapolate is True or extrapolate == 2:
+        return " and ds/2, extrapolated"
+    return f", ds/2, …, ds/{extrapolate}, extrapolated"
 
 
 def _sampling(arguments: dict[str, Any]) -> str:

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from fpsolve.density.negative_cells import add_cells
 from fpsolve.density.smooth.lag import allowance, curvature_lag
 from fpsolve.density.solution import Solution
 from fpsolve.evolution.richardson import extrapolated_series, gain_of
@@ -16,7 +17,7 @@ from fpsolve.evolution.stored import CombinedDensities, LazyDensities
 from fpsolve.grids import diagnostics
 from fpsolve.model.smooth import SmoothLayDownModel
 
-__all__ = ["extrapolated"]
+__all__ = ["WINDOW", "extrapolated", "resolved"]
 
 
 # Beyond these the angle forgets its direction, or the nozzle turns, within a step: the
@@ -24,7 +25,7 @@ __all__ = ["extrapolated"]
 LARGEST_DIFFUSION, LARGEST_TURN = 5.0, 3.0
 # Half width of the window of an estimate, relative to that of the box: a quarter turn
 # of a fibre, for a box of four to eight throwing ranges, lasts longer.
-_WINDOW = 1 / 6
+WINDOW = 1 / 6
 
 
 def extrapolated(coarse: Solution, fine: Solution, order: int) -> Solution:
@@ -50,13 +51,13 @@ def extrapolated(coarse: Solution, fine: Solution, order: int) -> Solution:
         Order q of the scheme in ds.
     """
     gain = gain_of(order)
-    allowed = gain if _resolved(coarse) else 1.0
+    allowed = gain if resolved(coarse) else 1.0
     lag: dict[str, float] = {}
     model: Any = coarse.model
     if isinstance(model, SmoothLayDownModel):
         allowed = max(allowed, allowance(model, coarse.ds, gain))
         lag = curvature_lag(model, coarse.grid, coarse.ds)
-    reach = _WINDOW * min(fine.grid.half_widths)
+    reach = WINDOW * min(fine.grid.half_widths)
     series, errors = extrapolated_series(
         fine.series, coarse.series, gain, reach, allowed, is_extrapolated
     )
@@ -72,7 +73,7 @@ def extrapolated(coarse: Solution, fine: Solution, order: int) -> Solution:
     for name in ("wall_seconds", "cpu_seconds", "n_steps"):
         provenance[name] = fine.provenance[name] + coarse.provenance[name]
     provenance["extrapolated"] = True
-    return replace(
+    found = replace(
         fine,
         ds=coarse.ds,
         densities=_combined(fine.densities, coarse.densities, gain),
@@ -80,9 +81,10 @@ def extrapolated(coarse: Solution, fine: Solution, order: int) -> Solution:
         errors=errors,
         provenance=provenance,
     )
+    return add_cells(found, (coarse, fine))
 
 
-def _resolved(coarse: Solution) -> bool:
+def resolved(coarse: Solution) -> bool:
     """Whether errors are a power of ds; a warning tells if not."""
     model, ds = coarse.model, coarse.ds
     if model is None:

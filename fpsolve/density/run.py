@@ -63,12 +63,12 @@ class Run:
         report: ProgressCallback,
         n_before: int,
         n_total: int,
-        fallback: Solution | None = None,
+        done: Sequence[Solution] = (),
     ) -> Solution:
         """Run to the end; what stops it leaves with the partial solution.
 
-        With extrapolation the finished run at ds is the `fallback`: it is what is
-        left when the one at ds/2 stops.
+        With extrapolation the runs at ds, ds/2, … are `done`: the last of them is what
+        is left when the next stops.
         """
         try:
             self._begin()
@@ -79,14 +79,14 @@ class Run:
                 self.keeper.after(last, self.snapshot)
             self.keeper.finish(self.step, self.snapshot)
         except RunError as error:
-            error.solution = self._partial("failed", str(error), fallback)
+            error.solution = self._partial("failed", str(error), done)
             raise
         except KeyboardInterrupt:
             step = self.step if self.settled else None
             message = (
                 f"stopped by the user{self.keeper.interrupted(step, self.snapshot)}"
             )
-            partial = self._partial("interrupted", message, fallback)
+            partial = self._partial("interrupted", message, done)
             raise RunInterrupted(partial) from None
         return self._solution("finished", "")
 
@@ -138,13 +138,15 @@ class Run:
         mass = self.recorder.first["mass"]
         check_record(values, mass, self.scheme, self.state, self.tolerances)
 
-    def _partial(
-        self, status: str, message: str, fallback: Solution | None
-    ) -> Solution:
-        if fallback is None:
+    def _partial(self, status: str, message: str, done: Sequence[Solution]) -> Solution:
+        if not done:
             return self._solution(status, message)
-        message += " (in the run at ds/2: this is the one at ds, not extrapolated)"
-        return replace(fallback, status=status, message=message)
+        n = len(done)
+        kept = f"ds/{n}" if n > 1 else "ds"
+        message += (
+            f" (in the run at ds/{n + 1}: this is the one at {kept}, not extrapolated)"
+        )
+        return replace(done[-1], status=status, message=message)
 
     def _solution(self, status: str, message: str) -> Solution:
         recorder, saves = self.recorder, self.schedule.saves[: self.keeper.n_saved]

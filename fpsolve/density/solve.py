@@ -1,40 +1,35 @@
-"""Evolve a density: its arguments, checked, and the one or two passes of a run."""
+"""Evolve a density: its arguments, checked."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from contextlib import AbstractContextManager, nullcontext
 from functools import partial
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import Any
 
 from fpsolve._kernels.threads import threads_worth_their_wait
 from fpsolve._support.arrays import Array
 from fpsolve._support.blas import one_blas_thread
-from fpsolve._support.checks import check_flag
 from fpsolve._support.memory import check_memory, required_memory
 from fpsolve._support.progress import ProgressCallback, reporting
 from fpsolve._support.provenance import announced_compilation
 from fpsolve.density.checkpoints.checkpoint import Checkpoint, as_checkpoint
-from fpsolve.density.extrapolation import extrapolated
 from fpsolve.density.keeper import MemoryKeeper
+from fpsolve.density.levels import MOST_LEVELS, checked_levels, n_passes
 from fpsolve.density.observed import Observe, described_observed, observed_series
+from fpsolve.density.passes import Keepers, run_passes, run_within
 from fpsolve.density.run import Run
 from fpsolve.density.schemes.dictionaries import described_scheme
 from fpsolve.density.schemes.scheme import Scheme, checked_scheme, checked_start
 from fpsolve.density.solution import Solution
+from fpsolve.density.step_choice import chosen_step
 from fpsolve.density.tolerances import Tolerances
 from fpsolve.evolution.call import Call, Kept
 from fpsolve.evolution.schedule import Schedule, checked_stops, make_schedule
 from fpsolve.grids.reference import checked_reference
 
-if TYPE_CHECKING:
-    from fpsolve.density.checkpoints.keeper import CheckpointKeeper
-
 __all__ = ["solve"]
-
-# Of the name of a pass and its schedule.
-Keepers: TypeAlias = Callable[[str, Schedule], "MemoryKeeper | CheckpointKeeper"]
 
 
 @one_blas_thread()
@@ -42,10 +37,11 @@ def solve(
     scheme: Scheme,
     p0: Array,
     s_span: tuple[float, float],
-    ds: float,
+    ds: float | None = None,
     *,
     save_at: Iterable[float] | None = None,
-    extrapolate: bool = False,
+    extrapolate: bool | int = False,
+    tolerance: float | None = None,
     progress: bool | ProgressCallback = False,
     mass_tolerance: float = 1e-10,
     boundary_tolerance: float = 1e-3,
@@ -71,13 +67,21 @@ def solve(
         Initial density; with a curvature (n1, n2, n_alpha, n_kappa).
     s_span : (float, float)
         Arclength at the start and at the end.
-    ds : float
-        Step; must divide the span. `suggest_step` proposes one.
+    ds : float, optional
+        Step; must divide the span. `suggest_step` proposes one. With `tolerance` the
+        longest that is tried, by default one that resolves the law.
     save_at : iterable of float, optional
         Where to keep the density; by default at the end.
-    extrapolate : bool
+    extrapolate : bool or int
         Run with ds and ds/2, combine both to cancel the leading error in ds
-        (Richardson) and attach error estimates for everything that is returned.
+        (Richardson) and attach error estimates for everything that is returned. A
+        number n from 2 to 8 runs with ds, ds/2, …, ds/n and combines all of them to
+        order 2n (Aitken, Neville), for a scheme whose error has even powers of ds only.
+    tolerance : float, optional
+        L1 error of the saved densities that is to be left of the step. Chooses ds and
+        the number of levels: one is added until the estimate is below, and the step is
+        halved where more levels do not help. `ds` and `provenance["levels"]` of the
+        solution tell what was done. What the cells leave is not in it.
     progress : bool or callable
         Show a bar, or call with (steps done, steps in all, s).
     mass_tolerance : float
@@ -131,6 +135,9 @@ def solve(
         Likewise, where a function of `observe` fails or gives no finite number.
     CheckpointMismatchError
         If the folder holds the checkpoint of another run; names every difference.
+    ToleranceError
+        If no step and no number of levels reaches `tolerance`; the best is its
+        `.solution`.
     CheckpointError
         If a checkpoint cannot be written. The last good one is kept.
 
@@ -139,7 +146,7 @@ def solve(
     [KMW09]_, equations (7) and (11); extrapolation as in [Ric11]_.
     """
     p0 = checked_start(checked_scheme(scheme), p0)
-    extrapolate = check_flag("extrapolate", extrapolate)
+    extrapolate = checked_levels(scheme, extrapolate)
     if reference is not None:
         reference = checked_reference(reference, scheme.grid)
     tolerances = Tolerances(
@@ -148,13 +155,15 @@ def solve(
     )  # fmt: skip
     observed = observed_series(observe)
     save_at = None if save_at is None else tuple(checked_stops(save_at))
+    ds = chosen_step(scheme, s_span, save_at, ds, extrapolate, tolerance)
     schedule = make_schedule(s_span, ds, save_at, record_every)
     scheme.model.curve.check_span(schedule.start, schedule.end)
-    # Two for writing, where saved densities do not stay. The first of two passes
+    # Two for writing, where saved densities do not stay. Every pass but the last
     # leaves its initial density.
     n_kept = len(schedule.saves) if checkpoint is None else 2
+    passes = n_passes(extrapolate) if tolerance is None else MOST_LEVELS
     required = required_memory(
-        scheme.grid.nbytes, scheme.n_arrays + float(extrapolate), n_kept, extrapolate
+        scheme.grid.nbytes, scheme.n_arrays + passes - 1, n_kept, passes
     )
     check_memory(required, memory_limit)
     call = Call.of("solve", {
@@ -164,6 +173,7 @@ def solve(
         "ds": float(ds),
         "save_at": save_at,
         "extrapolate": extrapolate,
+        "tolerance": None if tolerance is None else float(tolerance),
         **{f"{name}_tolerance": float(one) for name, one in vars(tolerances).items()},
         "reference": None if reference is None else Kept("reference", reference),
         "record_every": int(record_every),
@@ -177,28 +187,9 @@ def solve(
         announced_compilation(bool(progress)),
     ):
         begin = partial(Run, scheme, p0, reference, observed, tolerances, call)
-        return _completed(begin, keepers, schedule, extrapolate, report)
-
-
-def _completed(
-    begin: Callable[..., Run],
-    keepers: Keepers,
-    schedule: Schedule,
-    extrapolate: bool,
-    report: ProgressCallback,
-) -> Solution:
-    """The one pass of a run, or both combined."""
-    passes = [schedule, schedule.refined()] if extrapolate else [schedule]
-    n_total, n_before = sum(one.n_steps for one in passes), 0
-    found: list[Solution] = []
-    for number, one in enumerate(passes, start=1):
-        run = begin(one, keepers(f"pass-{number}", one))
-        found.append(run.complete(report, n_before, n_total, *found))
-        n_before += one.n_steps
-    if not extrapolate:
-        return found[0]
-    coarse, fine = found
-    return extrapolated(coarse, fine, run.scheme.order)
+        if tolerance is None:
+            return run_passes(begin, keepers, schedule, extrapolate, report)
+        return run_within(begin, keepers, schedule, tolerance, report)
 
 
 def _keepers(

@@ -12,12 +12,19 @@ import numpy as np
 from fpsolve._support.arrays import Array
 
 __all__ = [
+    "ROUNDING",
     "extrapolated",
     "extrapolated_series",
     "gain_of",
     "largest_nearby",
+    "levelled_series",
+    "tableau",
     "weights_of",
 ]
+
+
+# Of a number that is summed over a grid, in every step of a run.
+ROUNDING = 2e-15
 
 
 def gain_of(order: int) -> float:
@@ -42,6 +49,46 @@ def weights_of(divisors: Sequence[int]) -> list[float]:
         float(np.prod([one / (one - other) for other in squares if other != one]))
         for one in squares
     ]
+
+
+def tableau(levels: int) -> tuple[Array, Array]:
+    """Weights of the last two entries of Aitken's and Neville's tableau in ds².
+
+    Of u_{ds}, u_{ds/2}, …, u_{ds/n}: the combination of all, of order 2n, and that of
+    all but the first, of order 2n − 2; shapes (n,).
+    """
+    divisors = range(1, levels + 1)
+    best, lower = weights_of(divisors), weights_of(divisors[1:])
+    return np.array(best), np.array([0.0, *lower])
+
+
+def levelled_series(
+    runs: Sequence[Mapping[str, Array]],
+    reach: float | Array,
+    resolved: bool,
+    rounding: float,
+    approximates: Callable[[str], bool],
+) -> tuple[dict[str, Array], dict[str, Array]]:
+    """Every series of runs with ds, ds/2, …, ds/n combined, and errors at every s.
+
+    The error is the difference of the last two entries of the tableau, which is that
+    of the lower order and covers the higher; where steps are not `resolved`, and for
+    series that are not combined, the difference to the run with ds/n. Besides it holds
+    the `rounding` of a series, relative to its largest value.
+    """
+    best, lower = tableau(len(runs))
+    finest = np.zeros(len(runs))
+    finest[-1] = 1.0
+    series, errors = dict(runs[-1]), {}
+    for name in series:
+        together = np.stack([one[name] for one in runs])
+        combined = approximates(name)
+        spread = best - (lower if combined and resolved else finest)
+        errors[name] = _error(runs[-1]["s"], spread @ together, reach, 1.0)
+        errors[name] += rounding * np.abs(together).max(initial=0.0)
+        if combined:
+            series[name] = best @ together
+    return series, errors
 
 
 def extrapolated_series(

@@ -64,14 +64,14 @@ class Schedule:
         """Pairs (from, to) of neighbouring records."""
         return zip(self.records[:-1], self.records[1:], strict=True)
 
-    def refined(self) -> Schedule:
-        """The same stops with half the step."""
+    def refined(self, by: int = 2) -> Schedule:
+        """The same stops with the step divided by `by`."""
         return Schedule(
             self.start,
-            self.ds / 2,
-            2 * self.n_steps,
-            tuple(2 * step for step in self.records),
-            tuple(2 * step for step in self.saves),
+            self.ds / by,
+            by * self.n_steps,
+            tuple(by * step for step in self.records),
+            tuple(by * step for step in self.saves),
         )
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import operator
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -11,10 +11,27 @@ from typing import Any
 import numpy as np
 from numpy.lib.mixins import NDArrayOperatorsMixin
 
+from fpsolve._kernels.combining import add_weighted
 from fpsolve._support.arrays import Array
 from fpsolve.errors import FileFormatError
 
-__all__ = ["CombinedDensities", "LazyDensities", "StoredDensities"]
+__all__ = [
+    "CombinedDensities",
+    "LazyDensities",
+    "StoredDensities",
+    "WeightedDensities",
+    "weighted",
+]
+
+
+def weighted(densities: Sequence[Array], weights: Array) -> Array:
+    """Σ_j w_mj p_j for every row of weights; shape (m, *shape of a density)."""
+    sums = np.empty((weights.shape[0], *densities[0].shape))
+    flat = sums.reshape(len(sums), -1)
+    for number, p in enumerate(densities):
+        row = np.ascontiguousarray(weights[:, number])
+        add_weighted(np.ascontiguousarray(p).reshape(-1), row, flat, number == 0)
+    return sums
 
 
 class LazyDensities(NDArrayOperatorsMixin):
@@ -118,6 +135,26 @@ class StoredDensities(LazyDensities):
 
     def __getstate__(self) -> dict[str, Any]:
         return {"path": self.path, "shape": self.shape}
+
+
+class WeightedDensities(LazyDensities):
+    """Σ_j w_j p_j for the densities p_j of several runs.
+
+    Parameters
+    ----------
+    runs : sequence of LazyDensities or ndarray
+    weights : sequence of float
+    """
+
+    def __init__(self, runs: Sequence[Any], weights: Sequence[float]) -> None:
+        self.runs, self.weights = tuple(runs), tuple(weights)
+        self.shape = runs[0].shape
+
+    def read(self, index: int) -> Array:
+        """One density, summed from the first run to the last."""
+        runs = [run[index] for run in self.runs]
+        combined: Array = weighted(runs, np.array([self.weights]))[0]
+        return combined
 
 
 class CombinedDensities(LazyDensities):

@@ -17,7 +17,7 @@ __all__ = ["provenance_part", "status_notice", "suggestion"]
 # Shown elsewhere on the page, or stand in for a model that cannot be read back.
 _ELSEWHERE = (
     "versions", "date", "wall_seconds", "cpu_seconds", "n_steps", "extrapolated",
-    "environment", "configuration", "suggested", "call", "model_description",
+    "levels", "environment", "configuration", "suggested", "call", "model_description",
     "equation", "initial_description",
 )  # fmt: skip
 _TONES = {"finished": "good", "interrupted": "warning"}

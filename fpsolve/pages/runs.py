@@ -27,7 +27,9 @@ def step_text(solution: Any) -> str:
     """Return the step and how far it led."""
     s = solution.series["s"]
     reached = f", s from {s[0]:g} to {s[-1]:g}" if s.size else ""
-    also = " and ds/2, extrapolated" if solution.errors else ""
+    levels = getattr(solution, "provenance", {}).get("levels", 2)
+    steps = " and ds/2" if levels == 2 else f", …, ds/{levels}"
+    also = f"{steps}, extrapolated" if solution.errors else ""
     return f"ds = {solution.ds:g}{also}{reached}"
 
 

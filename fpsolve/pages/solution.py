@@ -199,7 +199,7 @@ def _accuracy(solution: Solution) -> list[Block]:
         )
         return [Paragraph(said), *_laws(solution)]
     said = (
-        "Errors are Richardson estimates from the runs with ds and ds/2: those of the "
+        "Errors are Richardson estimates from runs with shorter steps: those of the "
         "step. What the grid does not resolve is not in them; the mass in the "
         "outermost cells and negative values tell of it."
     )

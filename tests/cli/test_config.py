@@ -11,6 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import fpsolve as fp
+from fpsolve.cli import plan
 from fpsolve.cli.config import (
     EXAMPLES,
     PathsConfig,
@@ -132,6 +133,30 @@ def test_a_missing_grid_and_step_are_suggested_with_their_reason():
     again = read_config(config.resolved(problem).to_toml()).build()
     assert again.grid.to_dict() == problem.grid.to_dict()
     assert again.arguments["ds"] == ds
+
+
+def test_levels_and_the_translation_are_said_in_a_configuration():
+    text = TEXT.replace("s_end = 1.0", "s_end = 1.0\nextrapolate = 4")
+    problem = read_config(text).build()
+    assert problem.arguments["extrapolate"] == 4
+    again = read_config(read_config(text).resolved(problem).to_toml())
+    assert again.build().arguments["extrapolate"] == 4
+    fourier = TEXT.replace(
+        'kind = "drift_kick"', 'kind = "drift_kick"\ntranslation = "fourier"'
+    )
+    assert read_config(fourier).build().scheme.options["translation"] == "fourier"
+
+
+def test_a_tolerance_decides_about_levels_where_it_is_asked_to():
+    text = TEXT.replace(
+        "s_end = 1.0", 's_end = 1.0\nextrapolate = "auto"\ntolerance = 1e-5'
+    )
+    problem = read_config(text).build()
+    assert problem.arguments["tolerance"] == 1e-5
+    assert problem.arguments["extrapolate"] is False
+    assert plan._steps(problem.arguments).count("until the step leaves 1e-05") == 1
+    again = read_config(text).resolved(problem).build()
+    assert again.arguments["tolerance"] == 1e-5
 
 
 @pytest.mark.parametrize("name", EXAMPLES)
@@ -265,7 +290,7 @@ WRONG = {
     ),
     "number for a truth value": (
         ("s_end = 1.0", "s_end = 1.0\nextrapolate = 1"),
-        r"section \[run\]: `extrapolate` must be true or false, got 1\.",
+        r"section \[run\]: `extrapolate` must be true or false, from 2 to 8 .* got 1\.",
     ),
     "negative number": (
         ("noise = 1.0", "noise = -1.0"),

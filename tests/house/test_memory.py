@@ -33,7 +33,7 @@ def test_a_run_that_does_not_fit_is_refused_before_it_starts():
 def test_the_estimate_counts_saved_densities_twice_with_extrapolation():
     one = required_memory(10**6, 6.0, 3)
     assert required_memory(10**6, 6.0, 4) - one == 10**6
-    assert required_memory(10**6, 6.0, 3, extrapolate=True) - one == 3 * 10**6
+    assert required_memory(10**6, 6.0, 3, n_passes=2) - one == 3 * 10**6
 
 
 MEMORY = [

@@ -33,7 +33,7 @@ def test_every_kernel_has_a_case():
         "interpolate_at_feet", "interpolate_at_perturbed_feet", "blend",
         "row_functionals", "row_sums", "scale_rows", "rotate", "rotation_matrices",
         "translate", "translate_positive", "solve_rows", "kick", "mix",
-        "curvature_sums",
+        "curvature_sums", "add_weighted", "shift_fourier",
     }  # fmt: skip
 
 
@@ -64,6 +64,7 @@ def test_parallel_kernels_do_not_depend_on_the_number_of_threads(name, on_thread
     [
         (drift_kick, {}),
         (drift_kick, {"positive": True, "balanced": True}),
+        (drift_kick, {"translation": "fourier"}),
         (semi_lagrangian, {}),
         (semi_lagrangian, {"form": "p", "limited": True}),
     ],

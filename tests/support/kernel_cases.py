@@ -4,7 +4,9 @@ import numpy as np
 
 from fpsolve._kernels import functionals
 from fpsolve._kernels.characteristics import Displacement
+from fpsolve._kernels.fourier_shift import Direction
 from fpsolve.density.schemes.diffusion import ImplicitDiffusion
+from fpsolve.density.schemes.fourier_translation import blocked, shift_weights
 from fpsolve.density.schemes.rotation import RotationDiffusion
 from fpsolve.density.schemes.stencils import flux_taps, shift_taps
 from fpsolve.grids.phase_space import PhaseSpaceGrid
@@ -57,6 +59,27 @@ class Arguments:
             "kick": kicks,
             "mix": mixtures,
             "curvature_sums": [sums],
+        }
+
+    def shift_cases(self):
+        """Kernels of the shift along ξ2, whose cells are even or odd in number."""
+        n2, flat = self.n2, self.p.ravel()
+        along = Direction(n2, self.n, self.n1, n2 * self.n, self.n)
+        at = np.array([0, 2, 3, 5]) * along.stride_beside
+        columns = self.normal(n2, 32)
+        parts = 2 if n2 % 2 == 0 else 1
+        half = n2 // parts
+        sources, weights = self.normal(parts, 2 * half, 32), self.normal(parts, half, 8)
+        shift = blocked(shift_weights(1.7 * np.sin(self.grid.alpha), n2))
+        whole, halves = np.zeros((1, 10, 32)), np.zeros((2, 10, 32))
+        five, ten = self.normal(5, 32), self.normal(10, 32)
+        return {
+            "gather": [(flat, at, along, k, columns.copy()) for k in (8, 3)],
+            "scatter": [(columns, at, along, k, flat.copy()) for k in (8, 3)],
+            "halve": [(five, whole), (ten, halves)],
+            "convolve": [(sources[0], weights[0], half, np.zeros(32))],
+            "shift_columns": [(sources, weights, np.zeros((2, 32)), columns.copy())],
+            "shift_fourier": [(flat, shift, along, np.zeros(flat.size))],
         }
 
     def quads(self):
@@ -206,5 +229,10 @@ class Arguments:
             )],
             "eliminate": [(elimination.pivots, elimination.numbers[2], row[0].copy())],
             "solve_rows": [(p, *elimination, self.out())],
+            "add_weighted": [
+                (p.ravel(), ones[:3] / 3, self.normal(3, p.size), begin)
+                for begin in (True, False)
+            ],
             **self.smooth_cases(),
+            **self.shift_cases(),
         }  # fmt: skip

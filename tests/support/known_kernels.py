@@ -5,6 +5,8 @@ from numba.core.dispatcher import Dispatcher
 
 from fpsolve._kernels import (
     characteristics,
+    combining,
+    fourier_shift,
     functionals,
     moebius,
     rotation,
@@ -15,7 +17,8 @@ from fpsolve._kernels import (
 from fpsolve._kernels.compiling import ParallelKernel
 
 MODULES = [
-    characteristics, functionals, moebius, rotation, smooth, translation, tridiagonal,
+    characteristics, combining, fourier_shift, functionals, moebius, rotation, smooth,
+    translation, tridiagonal,
 ]  # fmt: skip
 
 

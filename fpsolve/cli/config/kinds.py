@@ -6,10 +6,11 @@ import math
 import sys
 from typing import TYPE_CHECKING, ClassVar, Literal, TypeAlias
 
-from pydantic import model_validator
+from pydantic import field_validator, model_validator
 
-from fpsolve._support.checks import check_tolerance
+from fpsolve._support.checks import check_tolerance, shown
 from fpsolve.cli.config.sections import Section, one_of, section
+from fpsolve.density.levels import MOST_LEVELS
 from fpsolve.density.schemes.known import SCHEMES
 from fpsolve.evolution.schedule import make_schedule, step_dividing
 from fpsolve.grids import initial
@@ -20,6 +21,7 @@ from fpsolve.model.process import Process
 from fpsolve.model.reading import make_model
 
 __all__ = [
+    "AUTOMATIC",
     "VARIANCE",
     "CurveSection",
     "GridSection",
@@ -66,6 +68,10 @@ else:
     ProcessSection = section(Process)
 
 
+# The number of levels that the tolerance asks for.
+AUTOMATIC = "auto"
+
+
 class SpanSection(Section):
     """How far to go from s = 0, in which steps, and where to keep what is found."""
 
@@ -108,11 +114,12 @@ class SpanSection(Section):
 class RunSection(SpanSection):
     """How far to run and what to keep; see `fpsolve.solve`.
 
-    `tolerance` is the L1 error at which a grid or a step that is not given aims.
+    `tolerance` is the L1 error at which a grid or a step that is not given aims. With
+    `extrapolate = "auto"` it is what the step may leave, and decides about levels.
     """
 
     record_every: int = 1
-    extrapolate: bool = False
+    extrapolate: bool | int | str = False
     tolerance: float = 1e-2
     mass_tolerance: float | None = None
     boundary_tolerance: float | None = None
@@ -122,6 +129,17 @@ class RunSection(SpanSection):
 
     def _make_schedule(self, ds: float, saves: _Numbers | None) -> None:
         make_schedule((0.0, self.s_end), ds, saves, self.record_every)
+
+    @field_validator("extrapolate", mode="before")
+    @classmethod
+    def _check_extrapolate(cls, value: object) -> object:
+        levels = isinstance(value, int) and 2 <= value <= MOST_LEVELS
+        if not (isinstance(value, bool) or levels or value == AUTOMATIC):
+            raise ValueError(
+                f"`extrapolate` must be true or false, from 2 to {MOST_LEVELS} levels, "
+                f'or "{AUTOMATIC}", got {shown(value)}.'
+            )
+        return value
 
     @model_validator(mode="after")
     def _check_tolerances(self) -> RunSection:

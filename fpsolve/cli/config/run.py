@@ -8,12 +8,15 @@ from fpsolve._support.arrays import Array
 from fpsolve._support.memory import check_memory, required_memory
 from fpsolve.cli.config.description import Description, named_section
 from fpsolve.cli.config.kinds import (
+    AUTOMATIC,
     GridSection,
     InitialSection,
     OutputSection,
     RunSection,
     SchemeSection,
 )
+from fpsolve.density.levels import MOST_LEVELS, n_passes
+from fpsolve.density.step_choice import FIRST_ERROR
 from fpsolve.density.suggestions import SuggestedStep, suggest_step
 from fpsolve.grids.initial import gaussian, with_curvature
 from fpsolve.grids.smooth import AnyGrid, SmoothPhaseSpaceGrid
@@ -124,13 +127,19 @@ class RunConfig(Description):
         # made already, and tables as large as the grid.
         n_saved = len(self.run.saves()) if saved_in_memory else 0
         check_memory(
-            required_memory(grid.nbytes, _FEWEST_ARRAYS, n_saved, self.run.extrapolate)
+            required_memory(grid.nbytes, _FEWEST_ARRAYS, n_saved, self._n_passes())
         )
+
+    def _n_passes(self) -> int:
+        asked = self.run.extrapolate
+        return MOST_LEVELS if isinstance(asked, str) else n_passes(asked)
 
     def _arguments(self, model: Any, grid: AnyGrid) -> dict[str, Any]:
         run, ds = self.run, self.run.ds
+        automatic = run.extrapolate == AUTOMATIC
         if ds is None:
-            suggested = suggest_step(model, grid, run.tolerance)
+            error = FIRST_ERROR if automatic else run.tolerance
+            suggested = suggest_step(model, grid, error)
             ds = SuggestedStep(run.step(suggested), suggested.reason)
             run.check_schedule(ds)
         arguments: dict[str, Any] = {
@@ -138,6 +147,8 @@ class RunConfig(Description):
             "ds": ds,
             "save_at": run.saves(),
             "record_every": run.record_every,
-            "extrapolate": run.extrapolate,
+            "extrapolate": False if automatic else run.extrapolate,
         }
+        if automatic:
+            arguments["tolerance"] = run.tolerance
         return arguments | run.tolerances()

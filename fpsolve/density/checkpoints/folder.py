@@ -26,6 +26,7 @@ from fpsolve.density.checkpoints.manifest import MANIFEST, Manifest, read_manife
 from fpsolve.density.checkpoints.snapshots import SnapshotFiles
 from fpsolve.density.checkpoints.start import STORE, digested, write_start
 from fpsolve.density.checkpoints.store import PassStore
+from fpsolve.density.levels import n_passes
 from fpsolve.errors import CheckpointError, CheckpointMismatchError
 from fpsolve.evolution.schedule import Schedule
 
@@ -35,7 +36,7 @@ _TITLE = "Start and saved densities of a run of fpsolve that is not complete"
 _LOCK = "lock"
 # Patterns of what the folder holds while it has no `run.json`: it is being made, or
 # removed.
-_OWN = (_LOCK, f"*{DRAFT}", "pass-?-?.npz", STORE)
+_OWN = (_LOCK, f"*{DRAFT}", "pass-*-?.npz", STORE)
 # What zarr calls a file until it is complete.
 _PARTIAL = "*.partial"
 
@@ -81,6 +82,7 @@ def opened_folder(
 
         def keeper(name: str, schedule: Schedule) -> CheckpointKeeper:
             size = len(schedule.saves), arrays["p0"].shape
+            _have_group(folder / STORE, name)
             return CheckpointKeeper(
                 folder, PassStore(folder / STORE / name, *size),
                 SnapshotFiles(folder, name, digest_of_run(run)), checkpoint.interval,
@@ -148,14 +150,24 @@ def _make(
         elif path.name != _LOCK:
             path.unlink()
     store = zarr.create_group(folder / STORE, attributes={"title": _TITLE})
-    for name in ("pass-1", "pass-2") if run["extrapolate"] else ("pass-1",):
-        store.create_group(name)
+    for number in range(n_passes(run["extrapolate"])):
+        store.create_group(f"pass-{number + 1}")
     write_start(store, {name: np.asarray(arrays[name]) for name in digested(run)})
     for path in [*(folder / STORE).rglob("*"), folder / STORE]:
         sync(path)
     # Last: with it the folder becomes a checkpoint.
     Manifest(run, checkpoint.every, checkpoint.notes, versions()).write(folder)
     sync(folder.absolute().parent)
+
+
+def _have_group(store: Path, name: str) -> None:
+    """Make the group of a pass that was not foreseen: levels follow a tolerance."""
+    import zarr
+
+    if not (store / name / "zarr.json").exists():
+        zarr.open_group(store, mode="r+").create_group(name)
+        for path in (*(store / name).rglob("*"), store / name, store):
+            sync(path)
 
 
 def _check_same(folder: Path, run: Mapping[str, Any]) -> None:

@@ -11,6 +11,7 @@ import numpy as np
 
 from fpsolve._support.arrays import Array
 from fpsolve._support.digests import SAMPLED, digest_of, plain
+from fpsolve.density.levels import n_passes
 from fpsolve.density.schemes.dictionaries import CODE
 from fpsolve.density.schemes.scheme import Scheme
 from fpsolve.evolution.call import IDENTITY, USER_CODE, Call
@@ -49,7 +50,7 @@ def identified(
     """
     run: dict[str, Any] = plain(call.arguments)
     about = run["scheme"]["$scheme"]
-    last = schedule.refined() if run["extrapolate"] else schedule
+    last = schedule.refined(n_passes(run["extrapolate"]))
     _sample(about["model"]["$model"], scheme.model, scheme.grid, last)
     if CODE in about["scheme"]:
         about["scheme"][_STEP] = _first_step(scheme, p0, schedule)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -9,6 +10,7 @@ from fpsolve._support.checks import check_path
 from fpsolve.density.checkpoints.identity import digest_of_run
 from fpsolve.density.checkpoints.manifest import read_manifest
 from fpsolve.density.checkpoints.snapshots import SnapshotFiles
+from fpsolve.density.levels import n_steps
 from fpsolve.evolution.schedule import make_schedule
 
 __all__ = ["CheckpointStatus", "status_of"]
@@ -22,7 +24,8 @@ class CheckpointStatus:
     ----------
     s : float
     n_done, n_total : int
-        Steps, those of both passes with extrapolation.
+        Steps, those of all passes with extrapolation; with `tolerance` at least so
+        many.
     """
 
     s: float
@@ -49,10 +52,15 @@ def status_of(directory: str | Path) -> CheckpointStatus:
     folder = check_path("directory", directory)
     run = read_manifest(folder).run
     schedule = make_schedule(run["s_span"], run["ds"], record_every=run["record_every"])
-    n_total = schedule.n_steps * (3 if run["extrapolate"] else 1)
-    for name, n_before in (("pass-2", schedule.n_steps), ("pass-1", 0)):
-        reached = SnapshotFiles(folder, name, digest_of_run(run)).reached()
-        if reached is not None:
-            step, s = reached
-            return CheckpointStatus(s, n_before + step, n_total)
-    return CheckpointStatus(schedule.start, 0, n_total)
+    digest, done, reached = digest_of_run(run), 0, None
+    for number in itertools.count(1):
+        found = SnapshotFiles(folder, f"pass-{number}", digest).reached()
+        if found is None:
+            break
+        done, reached = done + found[0], found
+    n_total = schedule.n_steps * n_steps(run["extrapolate"])
+    if run.get("tolerance") is not None:
+        # How many there will be is not known before they are made.
+        n_total = max(n_total, done + 1)
+    s = schedule.start if reached is None else reached[1]
+    return CheckpointStatus(s, done, n_total)

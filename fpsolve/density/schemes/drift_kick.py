@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Literal
 
 from fpsolve._support.arrays import Array
-from fpsolve._support.checks import check_flag
+from fpsolve._support.checks import check_flag, shown
 from fpsolve.density.schemes.form import State, balanced_form, plain_form
+from fpsolve.density.schemes.fourier_translation import FourierTranslation
 from fpsolve.density.schemes.rotation import RotationDiffusion
 from fpsolve.density.schemes.translation import Translation
 from fpsolve.grids.phase_space import PhaseSpaceGrid, check_grid
 from fpsolve.model.laydown import LayDownModel, check_model
 
+Interpolant = Literal["lagrange", "fourier"]
+# Points of the piecewise interpolation, where none are asked for.
+POINTS = 8
 # Mass errors of the plain form that are rounding, and worth a factor.
 SEEN, ROUNDING = 2e-14, 1e-12
 
@@ -19,10 +23,11 @@ SEEN, ROUNDING = 2e-14, 1e-12
 class DriftKick:
     """p ← T½ (R½ D R½) T½ p: translation, rotation, diffusion, each exact in time.
 
-    Order 2 in ds (the composition is symmetric), `interpolation_order` in Δξ,
-    spectral in α. Between two records the half translations of neighbouring steps
-    merge into one. Mass: kept to rounding in the plain form; in the balanced form
-    restored by a factor after every recorded step, the size of which is recorded.
+    Order 2 in ds (the composition is symmetric, so that its error has even powers of
+    ds only), `interpolation_order` in Δξ or spectral, spectral in α. Between two
+    records the half translations of neighbouring steps merge into one. Mass: kept to
+    rounding in the plain form; in the balanced form restored by a factor after every
+    recorded step, the size of which is recorded.
     Equilibrium: kept to rounding in the balanced form on a fixed belt. Sign: kept to
     rounding with `positive`. Build it with `fpsolve.drift_kick`.
 
@@ -36,6 +41,11 @@ class DriftKick:
         Evolve h = p/p_S.
     interpolation_order : int
         Points of the translation in each direction, even.
+    translation : {"lagrange", "fourier"}
+        By piecewise polynomials, or exactly for the trigonometric interpolant on the
+        periodic box: for smooth densities on few cells, with several levels of
+        `extrapolate` in `solve`. Not positive: what the cells do not resolve, and an
+        h = p/p_S that is not periodic, oscillate over the whole box.
 
     Raises
     ------
@@ -60,26 +70,35 @@ class DriftKick:
         *,
         positive: bool = False,
         balanced: bool = False,
-        interpolation_order: int = 8,
+        interpolation_order: int = POINTS,
+        translation: Interpolant = "lagrange",
     ) -> None:
         check_model(model)
         check_grid(grid)
         self.model, self.grid = model, grid
         self.positive = check_flag("positive", positive)
         self.balanced = check_flag("balanced", balanced)
-        self.interpolation_order = interpolation_order
+        self.interpolation_order, self.translation = interpolation_order, translation
         self.form = balanced_form(model, grid) if balanced else plain_form(grid)
-        self.translate = Translation(model, grid, interpolation_order, self.positive)
+        self.translate = self._translation()
         self.kick = RotationDiffusion(model, grid, self.balanced, self.positive)
 
     @property
     def options(self) -> dict[str, Any]:
         """Keyword arguments that build this scheme again."""
-        return {
+        options: dict[str, Any] = {
             "positive": self.positive,
             "balanced": self.balanced,
             "interpolation_order": self.interpolation_order,
         }
+        # Runs that were made when there was one translation only are still the same.
+        fourier = self.translation == "fourier"
+        return {**options, "translation": "fourier"} if fourier else options
+
+    @property
+    def symmetric(self) -> bool:
+        """Whether the error has even powers of ds only; limiters have none."""
+        return not self.positive
 
     @property
     def n_arrays(self) -> float:
@@ -111,6 +130,29 @@ class DriftKick:
     ) -> None:  # fmt: skip
         operator(state.values, s, ds, state.work)
         state.swap()
+
+    def _translation(self) -> Translation:
+        """The translation that was asked for."""
+        if self.translation == "lagrange":
+            order = self.interpolation_order
+            return Translation(self.model, self.grid, order, self.positive)
+        if self.translation != "fourier":
+            raise ValueError(
+                '`translation` must be "lagrange" or "fourier", got '
+                f"{shown(self.translation)}."
+            )
+        if self.positive:
+            raise ValueError(
+                '`positive` must be False with `translation="fourier"`, got True: a '
+                "trigonometric interpolant is not positive; choose one of the two."
+            )
+        if self.interpolation_order != POINTS:
+            raise ValueError(
+                '`interpolation_order` must be left out with `translation="fourier"`, '
+                f"got {self.interpolation_order!r}: the interpolant is that of all "
+                "cells."
+            )
+        return FourierTranslation(self.model, self.grid)
 
     def _restore_mass(self, state: State) -> None:
         # Every sub-step is homogeneous in the unknown, so one factor at the end is

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fpsolve._support.declared import declared
+from fpsolve.density.levels import MOST_LEVELS, n_steps
 from fpsolve.errors import NotRepeatableError
 
 if TYPE_CHECKING:
@@ -25,7 +26,7 @@ _FASTEST = 1e-10
 _LONGEST = 30 * 86400.0
 # Arguments that decide the number of steps.
 _DECISIVE = {"s_span", "s_start", "s_end", "ds", "save_at", "record_every",
-             "extrapolate", "n_paths"}  # fmt: skip
+             "extrapolate", "tolerance", "n_paths"}  # fmt: skip
 _SAME = 1e-6
 
 
@@ -69,24 +70,34 @@ def _check_time(n_steps: float, n_each: int, what: str) -> None:
         )
 
 
+def _passes(extrapolate: Any) -> int:
+    """Steps of all passes for one of ds; what a file says need not be a level."""
+    if not isinstance(extrapolate, int) or extrapolate not in range(MOST_LEVELS + 1):
+        allowed = f"True, False or at most {MOST_LEVELS}"
+        raise _refused("`extrapolate`", str(extrapolate), allowed)
+    return n_steps(extrapolate)
+
+
 def _check_steps(result: Any, asked: Mapping[str, Any], given: Collection[str]) -> None:
     """Raise NotRepeatableError unless a run takes the steps that its result shows."""
-    are_paths, passes = "n_paths" in asked, 3 if asked.get("extrapolate") else 1
+    are_paths, passes = "n_paths" in asked, _passes(asked.get("extrapolate", False))
     span, ds = asked.get("s_span", ()), asked.get("ds", 0.0)
     if are_paths:
         span, passes = (asked.get("s_start"), asked.get("s_end")), asked["n_paths"]
     if not (_are_numbers(*_listed(span), ds, passes) and len(span) == 2 and ds > 0):
         raise _refused("`s_span` and `ds`", f"{span} and {ds}", "two numbers, a step")
-    n_steps, finished = abs(span[1] - span[0]) / ds, result.status == "finished"
+    n_coarse, finished = abs(span[1] - span[0]) / ds, result.status == "finished"
     if are_paths:
-        _check_time(n_steps, passes, "steps of all paths")
+        _check_time(n_coarse, passes, "steps of all paths")
     else:
-        _check_time(n_steps * passes, result.grid.n_cells, "steps of all cells")
-        _check_records(result, asked, n_steps, finished)
-    # A scheme of the caller's own need not count.
-    told = None if "scheme" in given else result.provenance.get("n_steps")
-    if finished and told is not None and abs(told - passes * n_steps) > 1:
-        raise _refused("`ds`", f"{passes * n_steps:.6g} steps", f"{told} steps")
+        _check_time(n_coarse * passes, result.grid.n_cells, "steps of all cells")
+        _check_records(result, asked, n_coarse, finished)
+    # A scheme of the caller's own need not count; with a tolerance steps are at least
+    # so many.
+    open_ended = "scheme" in given or asked.get("tolerance") is not None
+    told = None if open_ended else result.provenance.get("n_steps")
+    if finished and told is not None and abs(told - passes * n_coarse) > 1:
+        raise _refused("`ds`", f"{passes * n_coarse:.6g} steps", f"{told} steps")
 
 
 def _listed(value: Any) -> tuple[Any, ...]:
