@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import math
 import warnings
 from array import array
@@ -167,6 +168,12 @@ class Recorder:
         self.first: dict[str, float] = {}
         # All records, one after the other: 8 bytes a number.
         self.numbers = array("d")
+
+    def fresh(self) -> Recorder:
+        """One with no records yet, which shares what only depends on the run."""
+        other = copy.copy(self)
+        other.first, other.numbers, other.lowest = {}, array("d"), math.inf
+        return other
 
     def record(
         self, p: Array, s: float, told: Mapping[str, float] | None = None

@@ -12,15 +12,14 @@ from fpsolve._support.arrays import Array
 from fpsolve._support.progress import ProgressCallback
 from fpsolve._support.provenance import Stopwatch
 from fpsolve.density.keeper import MemoryKeeper, Snapshot, fields_of
+from fpsolve.density.recorder import Recorder
 from fpsolve.density.schemes.dictionaries import describe_scheme
 from fpsolve.density.schemes.scheme import Scheme
-from fpsolve.density.smooth.recorder import recorder_for
 from fpsolve.density.solution import Solution
 from fpsolve.density.tolerances import Tolerances, check_finite, check_record
 from fpsolve.errors import RunError, RunInterrupted
 from fpsolve.evolution.call import Call
 from fpsolve.evolution.schedule import Schedule
-from fpsolve.evolution.series import Series
 
 if TYPE_CHECKING:
     from fpsolve.density.checkpoints.keeper import CheckpointKeeper
@@ -44,7 +43,7 @@ class Run:
         scheme: Scheme,
         p0: Array,
         reference: Array | None,
-        observed: Sequence[Series],
+        recorder: Recorder,
         tolerances: Tolerances,
         call: Call,
         schedule: Schedule,
@@ -53,7 +52,7 @@ class Run:
         self.scheme, self.schedule, self.keeper = scheme, schedule, keeper
         self.tolerances, self.saves = tolerances, frozenset(schedule.saves)
         self.p0, self.reference, self.call = p0, reference, call
-        self.recorder = recorder_for(scheme, reference, observed)
+        self.recorder = recorder.fresh()
         self.state = scheme.start(p0)
         self.step, self.settled = 0, False
         self.watch = Stopwatch()

@@ -22,6 +22,7 @@ from fpsolve.density.passes import Keepers, run_passes, run_within
 from fpsolve.density.run import Run
 from fpsolve.density.schemes.dictionaries import described_scheme
 from fpsolve.density.schemes.scheme import Scheme, checked_scheme, checked_start
+from fpsolve.density.smooth.recorder import recorder_for
 from fpsolve.density.solution import Solution
 from fpsolve.density.step_choice import chosen_step
 from fpsolve.density.tolerances import Tolerances
@@ -186,7 +187,8 @@ def solve(
         reporting(progress) as report,
         announced_compilation(bool(progress)),
     ):
-        begin = partial(Run, scheme, p0, reference, observed, tolerances, call)
+        recorder = recorder_for(scheme, reference, observed)
+        begin = partial(Run, scheme, p0, reference, recorder, tolerances, call)
         if tolerance is None:
             return run_passes(begin, keepers, schedule, extrapolate, report)
         return run_within(begin, keepers, schedule, tolerance, report)

@@ -79,16 +79,15 @@ def levelled_series(
     best, lower = tableau(len(runs))
     finest = np.zeros(len(runs))
     finest[-1] = 1.0
-    series, errors = dict(runs[-1]), {}
-    for name in series:
-        together = np.stack([one[name] for one in runs])
-        combined = approximates(name)
-        spread = best - (lower if combined and resolved else finest)
-        errors[name] = _error(runs[-1]["s"], spread @ together, reach, 1.0)
-        errors[name] += rounding * np.abs(together).max(initial=0.0)
-        if combined:
-            series[name] = best @ together
-    return series, errors
+    names, s = list(runs[-1]), runs[-1]["s"]
+    together = np.array([[one[name] for name in names] for one in runs])
+    combined = np.array([approximates(name) for name in names])
+    below = np.where(combined & resolved, lower[:, None], finest[:, None])
+    change = np.einsum("jm,jmk->mk", best[:, None] - below, together)
+    errors = _error(s, change, reach, 1.0)
+    errors += rounding * np.abs(together).max(axis=(0, 2), initial=0.0)[:, None]
+    values = np.where(combined[:, None], np.tensordot(best, together, 1), together[-1])
+    return dict(zip(names, values, strict=True)), dict(zip(names, errors, strict=True))
 
 
 def extrapolated_series(
@@ -131,17 +130,21 @@ def _error(
 ) -> Array:
     size = np.abs(change)
     errors: Array = allowed * largest_nearby(s, size, reach)
-    errors[0] = (np.broadcast_to(allowed, s.shape) * size)[0]
+    errors[..., 0] = (np.broadcast_to(allowed, s.shape) * size)[..., 0]
     return errors
 
 
 def largest_nearby(s: Array, values: Array, reach: float | Array) -> Array:
-    """max of `values` over |s′ − s| ≤ reach, neighbours included; s ascending."""
+    """max of `values` over |s′ − s| ≤ reach, neighbours included; s ascending.
+
+    values (..., n), s (n,).
+    """
     n = s.size
     first = np.minimum(np.searchsorted(s, s - reach), np.maximum(np.arange(n) - 1, 0))
     last = np.maximum(np.searchsorted(s, s + reach, "right"), np.arange(n) + 2)
     bounds = np.stack([first, np.minimum(last, n)], axis=1).ravel()
     # An end of its own, since a range must not end behind the array.
-    padded = np.append(values, -np.inf)
-    found: Array = np.maximum.reduceat(padded, bounds)[::2]
+    ends = np.full((*values.shape[:-1], 1), -np.inf)
+    padded = np.concatenate([values, ends], axis=-1)
+    found: Array = np.maximum.reduceat(padded, bounds, axis=-1)[..., ::2]
     return found

@@ -11,6 +11,9 @@ from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.model.laydown import LayDownModel
 from fpsolve.model.potentials.at_points import gradient_at
 
+# Bytes that are of no account beside what every run is allowed for overhead.
+SMALL_CACHE = 16 * 2**20
+
 
 class RotationDiffusion:
     """R½ D R½ with R: ∂ₛp = ∂_α(∇B·τ⊥ p) and D: ∂ₛp = (A²/2) ∂_αα p, at fixed ξ.
@@ -89,9 +92,10 @@ class RotationDiffusion:
     def _kept_beside(
         self, nbytes: int, known: dict[float, RotationTable]
     ) -> dict[float, RotationTable]:
-        # Richardson alternates between two steps: keep both tables if they fit.
+        # An extrapolation goes from step to step: keep all tables if they fit.
         held = sum(table.nbytes for table in known.values())
-        return known if held + nbytes <= LARGEST_TABLE * self.grid.nbytes else {}
+        room = max(LARGEST_TABLE * self.grid.nbytes, SMALL_CACHE)
+        return known if held + nbytes <= room else {}
 
     def reaction(self, s: float, ds: float) -> Array:
         """Factor exp(−(γ(s + ds) − γ(s))·∇B) of the balanced form; (n1 n2,)."""
