@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import brentq
+from scipy.special import i0e, i1e
 
 from fpsolve._support.arrays import Array, check_finite_numbers
 from fpsolve._support.checks import check_positive, keep_checked
@@ -21,6 +22,8 @@ RISING = (np.array([4.0, 5.0, 6.0]), np.array([230.0, -391.0, 170.0]) / 9)
 FALLING = (np.array([-7.0, -8.0, -9.0]), np.array([209.0, -352.0, 152.0]) / 9)
 # Powers of κ between which the moment is finite: E ~ κ⁴ at 0 and κ⁻⁷ at infinity.
 LOWEST, HIGHEST = -5.0, 6.0
+# Nodes of a quadrature over ln κ in each of the three parts of E.
+PER_PART = 48
 
 
 @dataclass(frozen=True)
@@ -182,6 +185,69 @@ class TurbulenceSpectrum:
                 "not pass are no white noise."
             )
         return np.asarray(np.sqrt(2 * math.pi * self.moment(-2) / speed))
+
+    def decaying_amplitudes(self, speed: ArrayLike, decay_time: float) -> Array:
+        """White noise that replaces turbulence which passes and decays on the way.
+
+        With the correlation e^{−t²/(2 t_T²)} of an eddy with itself in the frame that
+        moves with the flow, a = (κ |w_n| t_T)²/4 and e^{−a} I_n(a) = J_n,
+
+            D² = (2π)^{3/2} t_T/2 ∫ E/κ {J0, (J0 + J1)/2, (J0 − J1)/2} dκ
+
+        along the fibre, along w_n and along the normal of both: the spectral tensor on
+        the plane across the fibre, times e^{−2a cos²φ} for waves at φ to the flow. Far
+        above the speed of decay these are `frozen_amplitude` twice and 0; air that does
+        not pass has finite ones.
+
+        Parameters
+        ----------
+        speed : array_like
+            |w_n| in m/s, 0 or more.
+        decay_time : float
+            t_T in s, positive; about k/ε.
+
+        Returns
+        -------
+        ndarray, shape (3, …)
+            In m^(3/2)/s^(1/2): along the fibre, along w_n, along their normal; to nine
+            digits.
+
+        Raises
+        ------
+        ValueError
+            If a speed is negative, or the time not positive.
+
+        References
+        ----------
+        [MW11]_.
+        """
+        speed = check_finite_numbers("speed", speed)
+        if not (speed >= 0).all():
+            raise ValueError(
+                f"`speed` must be non-negative, got {speed.min():g}; it is the modulus "
+                "of a velocity."
+            )
+        time = check_positive("decay_time", decay_time)
+        kappa, weights = self._nodes
+        a = (np.multiply.outer(speed * time, kappa) / 2) ** 2
+        even, odd = i0e(a), i1e(a)
+        shapes = np.stack([even, 0.5 * (even + odd), 0.5 * (even - odd)])
+        squares = shapes @ (weights * self.energy(kappa) / kappa)
+        squares = (2 * math.pi) ** 1.5 * time / 2 * np.maximum(squares, 0.0)
+        return np.asarray(np.sqrt(squares))
+
+    @cached_property
+    def _nodes(self) -> tuple[Array, Array]:
+        """Wave numbers and weights for integrals of E times smooth functions."""
+        first, last = np.log(self.inertial_range)
+        places, weights = np.polynomial.legendre.leggauss(PER_PART)
+        # Beyond these ends E/κ has lost 1e-13 and more of its integral.
+        kappa, found = [], []
+        for low, high in ((first - 8, first), (first, last), (last, last + 5)):
+            half = 0.5 * (high - low)
+            kappa.append(np.exp(low + half * (places + 1)))
+            found.append(half * weights * kappa[-1])
+        return np.concatenate(kappa), np.concatenate(found)
 
     @property
     def _level(self) -> float:

@@ -147,8 +147,59 @@ def test_white_noise_has_the_integral_of_the_correlations_across_the_fibre():
         (lambda: CASES[0].moment(6.0), "`power` must lie between -5 and 6, got 6"),
         (lambda: CASES[0].moment(math.nan), "`power` must lie between"),
         (lambda: CASES[0].frozen_amplitude(0.0), "`speed` must be positive, got 0"),
+        (
+            lambda: CASES[0].decaying_amplitudes(-1.0, 1.0),
+            "`speed` must be non-negative, got -1",
+        ),
+        (
+            lambda: CASES[0].decaying_amplitudes(1.0, 0.0),
+            "`decay_time` must be positive",
+        ),
     ],
 )
 def test_what_is_no_turbulence_is_refused(call, message):
     with pytest.raises(ValueError, match=message):
         call()
+
+
+def test_decaying_amplitudes_are_those_of_the_spectral_tensor_over_angles():
+    spectrum, time = CASES[1], 2e-3
+    angles = (np.arange(4000) + 0.5) * 2 * np.pi / 4000
+    for speed in (0.0, 0.3, 3.0):
+        kappa, weights = spectrum._nodes
+        left = np.exp(
+            -np.multiply.outer((kappa * speed * time) ** 2 / 2, np.cos(angles) ** 2)
+        )
+        squares = []
+        for share in (np.ones_like(angles), np.sin(angles) ** 2, np.cos(angles) ** 2):
+            around = 2 * np.pi * (left * share).mean(axis=1)
+            tensor = spectrum.energy(kappa) / (4 * np.pi * kappa)
+            squares.append((2 * np.pi) ** 1.5 * time * (weights * tensor) @ around)
+        found = spectrum.decaying_amplitudes(speed, time)
+        # The midpoint rule of a periodic function, sharp like 1/(κ |w| t_T).
+        np.testing.assert_allclose(found**2, squares, rtol=1e-9)
+
+
+def test_what_passes_faster_than_it_decays_is_frozen():
+    spectrum = CASES[0]
+    speeds = np.array([1e2, 1e3, 1e4])
+    along, across, normal = spectrum.decaying_amplitudes(speeds, 10.0)
+    frozen = spectrum.frozen_amplitude(speeds)
+    np.testing.assert_allclose(along, frozen, rtol=1e-7)
+    np.testing.assert_allclose(across, frozen, rtol=1e-4)
+    assert (normal < 0.01 * frozen).all()
+
+
+def test_air_at_rest_shakes_alike_in_all_directions_across():
+    along, across, normal = CASES[0].decaying_amplitudes(0.0, 0.01)
+    assert across == normal
+    # Of three equal squares a plane has the half of two in each of its directions.
+    assert along == pytest.approx(math.sqrt(2) * across, rel=1e-12)
+
+
+@pytest.mark.parametrize("power", [-2, -1, 0])
+def test_nodes_of_the_quadrature_give_the_moments(power):
+    for spectrum in CASES:
+        kappa, weights = spectrum._nodes
+        found = weights @ (spectrum.energy(kappa) * kappa**power)
+        assert found == pytest.approx(spectrum.moment(power), rel=1e-9)
