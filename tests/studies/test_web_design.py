@@ -149,6 +149,18 @@ def test_errors_of_the_optimum_cover_those_of_the_predictions(known, signs):
         assert moved > 0.5 * found.value_errors[of]
 
 
+def test_a_bound_that_may_hold_nothing_leaves_the_error_of_its_parameter(known):
+    """Slopes wrong by 1e-2 cannot tell one of 5e-3 at a bound from that of a minimum."""
+    law = replace(LAW, tilt=1e-2)
+    best = LAW.best(ZONES).mean() - law.tilt / (2 * law.a)
+    for slope, errs in ((5e-3, True), (5e-2, False)):
+        high = float(np.exp(best - slope / (2 * law.a)))
+        design = known(ZONES, law, free=("noise",), bounds={"noise": (5.0, high)})
+        assert design.active == ("noise at its upper bound",)
+        assert (design.value_errors[NOISE] >= law.tilt / (2 * law.a)) == errs
+        assert (design.value_errors[NOISE] > 0) == errs
+
+
 def test_a_parameter_that_nothing_tells_has_an_infinite_error(known):
     """A loose bound of CV is met at the fastest belt by noises of a whole interval."""
     design = known({0.02: 0.5}, bounds=WIDE | {"noise": (20.0, 30.0)})

@@ -98,8 +98,10 @@ def optimality(
     rest = gradient - active.rows.T @ multipliers
     lower, upper, targets = active.split(multipliers)
     weights = goal.weights(targets)
-    of_gradient = np.abs(rest) + at.slope_errors[space.places] @ weights
-    held = (lower > HOLDS) | (upper > HOLDS), targets > HOLDS
+    of_slopes = at.slope_errors[space.places] @ weights
+    # Where the errors of slopes could undo a multiplier, its bound may hold nothing.
+    held = lower + upper > np.maximum(of_slopes, HOLDS), targets > HOLDS
+    of_gradient = np.abs(rest) + of_slopes
     errors = errors_of(goal, space, predicted, y, held, weights, of_gradient)
     return Optimality(float(np.abs(rest).max()), lower, upper, targets, errors)
 

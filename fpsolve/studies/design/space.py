@@ -19,6 +19,7 @@ from fpsolve.studies.design.settings import (
     PARAMETERS,
     Settings,
 )
+from fpsolve.web.order import checked_titer
 
 __all__ = ["Space", "space_of"]
 
@@ -134,11 +135,13 @@ def space_of(start: Settings, free: Any, bounds: Any) -> Space:
     """The space of the arguments of `design_web`, checked."""
     names = checked_names(free)
     ends = checked_bounds({} if bounds is None else bounds, names)
-    for end in (0, 1):
-        own = [name for name in names if name in OF_PROCESS]
-        for name in own:
-            # It knows what is possible, and warns of what is unusual.
-            replace(start.process, **{name: ends[name][end]})
+    for name, pair in ends.items():
+        for end in pair:
+            # They know what is possible, and warn of what is unusual.
+            if name in OF_PROCESS:
+                replace(start.process, **{name: end})
+            elif name == "titer":
+                checked_titer(end, start.process)
     with np.errstate(divide="ignore"):
         low, high = np.log(np.array([ends[name] for name in names])).T
     space = Space(start, names, low, high)
