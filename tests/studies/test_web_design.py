@@ -150,7 +150,7 @@ def test_errors_of_the_optimum_cover_those_of_the_predictions(known, signs):
 
 
 def test_a_bound_that_may_hold_nothing_leaves_the_error_of_its_parameter(known):
-    """Slopes wrong by 1e-2 cannot tell one of 5e-3 at a bound from that of a minimum."""
+    """Slopes wrong by 1e-2 cannot tell one of 5e-3 at a bound from none."""
     law = replace(LAW, tilt=1e-2)
     best = LAW.best(ZONES).mean() - law.tilt / (2 * law.a)
     for slope, errs in ((5e-3, True), (5e-2, False)):
