@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 import numpy as np
 
@@ -17,45 +17,64 @@ __all__ = ["CountedFile", "PixelBlocks"]
 
 # Pixels that are made of counts at once.
 AT_ONCE = 2**18
+# Of a count.
+BYTES = 8
 
 
 class CountedFile:
-    """The counts of all pixels in a file, of which a part at a time is in memory."""
+    """The counts of all pixels in a file, of which a part at a time is in memory.
+
+    It is read and written, not mapped: of a file that is mapped the system counts what
+    lies around a part as memory, too.
+    """
 
     def __init__(self, path: Path, order: Order) -> None:
         self.path, self.order = path, order
         self.shape = image_shape(order.plan)
         with path.open("wb") as file:
-            file.truncate(8 * int(np.prod(self.shape)))
-
-    def mapped(self, mode: Any = "r") -> Counts:
-        """The file as an array; its pages are in memory until nothing refers to it."""
-        return np.memmap(self.path, np.int64, mode, shape=self.shape)
+            file.truncate(BYTES * int(np.prod(self.shape)))
 
     def add(self, laid: Laid) -> None:
         """Count what was laid."""
-        n_rows, n_columns = laid.counts.shape[:2]
-        rows = slice(laid.row, laid.row + n_rows)
-        columns = slice(laid.column, laid.column + n_columns)
-        self.mapped("r+")[rows, columns] += laid.counts
+        with self.path.open("r+b") as file:
+            for row, counts in enumerate(laid.counts, laid.row):
+                known = self._read(file, row, laid.column, len(counts))
+                self._seek(file, row, laid.column)
+                file.write(np.ascontiguousarray(known + counts).data)
 
-    def row_blocks(self) -> Iterator[tuple[slice, Counts]]:
+    def row_blocks(self) -> Iterator[Counts]:
         """Some rows after the other."""
-        step = max(AT_ONCE // self.shape[1], 1)
-        for start in range(0, self.shape[0], step):
-            rows = slice(start, start + step)
-            yield rows, np.array(self.mapped()[rows])
+        n_rows, n_columns, _ = self.shape
+        step = max(AT_ONCE // n_columns, 1)
+        for start in range(0, n_rows, step):
+            yield self.part(range(start, min(start + step, n_rows)), 0, n_columns)
 
     def tiles(self, n_columns: int) -> Iterator[tuple[slice, Counts]]:
         """So many columns after the other."""
+        rows = range(self.shape[0])
         for start in range(0, self.shape[1], n_columns):
             columns = slice(start, min(start + n_columns, self.shape[1]))
-            yield columns, np.array(self.mapped()[:, columns])
+            yield columns, self.part(rows, start, columns.stop - start)
+
+    def part(self, rows: range, column: int, n_columns: int) -> Counts:
+        """The counts of some rows, from a column on."""
+        with self.path.open("rb") as file:
+            return np.stack([self._read(file, row, column, n_columns) for row in rows])
+
+    def _read(self, file: IO[bytes], row: int, column: int, n_columns: int) -> Counts:
+        n_counted = self.shape[2]
+        self._seek(file, row, column)
+        found = file.read(BYTES * n_columns * n_counted)
+        return np.frombuffer(found, np.int64).reshape(n_columns, n_counted)
+
+    def _seek(self, file: IO[bytes], row: int, column: int) -> None:
+        _, n_columns, n_counted = self.shape
+        file.seek(BYTES * n_counted * (row * n_columns + column))
 
     @property
     def inside(self) -> int:
         """All counts of length."""
-        return sum(total(counts) for _, counts in self.row_blocks())
+        return sum(total(counts) for counts in self.row_blocks())
 
 
 @dataclass(frozen=True)
@@ -77,7 +96,7 @@ class PixelBlocks:
 
     def __iter__(self) -> Iterator[Array]:
         """Rows by rows."""
-        for _, counts in self.counted.row_blocks():
+        for counts in self.counted.row_blocks():
             yield self._of(counts)
 
     def tiles(self) -> Iterator[tuple[Any, Array]]:

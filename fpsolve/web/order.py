@@ -109,11 +109,13 @@ def order_of(
 def pixels_of(counts: Counts, order: Order) -> tuple[Array, Array, Array]:
     """Length per area, and the means of τ₁τ₁ and τ₁τ₂, of counts of any rows."""
     plan = order.plan
-    length, first, mixed = np.moveaxis(counts, -1, 0).astype(np.float64)
+    # One after the other: together they take as much memory as the counts, and no more.
+    length = counts[..., 0].astype(np.float64)
     with np.errstate(invalid="ignore"):
-        first, mixed = first / length, mixed / length
+        first, mixed = counts[..., 1] / length, counts[..., 2] / length
     one = plan.ensemble.schedule.ds / kernels.UNIT / plan.window.pixel**2 / order.unit
-    return length * one, first, mixed
+    length *= one
+    return length, first, mixed
 
 
 def check_closed(width: float, d: float) -> None:
