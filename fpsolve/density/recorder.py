@@ -166,6 +166,7 @@ class Recorder:
             self.uncounted = uncounted(model.potential, grid, self.ratio)
             self._check_mass(total)
         self.first: dict[str, float] = {}
+        self.start: dict[str, float] = {}
         # All records, one after the other: 8 bytes a number.
         self.numbers = array("d")
 
@@ -201,6 +202,18 @@ class Recorder:
         self.first = self.first or values
         self.numbers.extend(values[name] for name in self.first)
         return values
+
+    def record_start(
+        self, p: Array, s: float, told: Mapping[str, float]
+    ) -> dict[str, float]:
+        """`record` of the first density, which all passes of a run have in common."""
+        if not self.start:
+            self.start.update(self.record(p, s, told))
+            return self.start
+        self.first = dict(self.start)
+        self.numbers.extend(self.first.values())
+        self.rise(self.first["relative_entropy"])
+        return self.first
 
     @staticmethod
     def _check_mass(total: float) -> None:

@@ -131,7 +131,8 @@ class Run:
         p = self.scheme.density(self.state)
         told = {"mass_correction": self.state.correction, **self.state.report}
         check_finite(p, s)
-        values = self.recorder.record(p, s, told)
+        record = self.recorder.record if step else self.recorder.record_start
+        values = record(p, s, told)
         if step in self.saves:
             self.keeper.save(p)
         mass = self.recorder.first["mass"]

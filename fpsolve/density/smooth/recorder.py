@@ -67,7 +67,7 @@ class SmoothRecorder(Recorder):
         self.reference, self.inverse = reference, None
         self.falls, self.lowest = False, math.inf
         self.circulation = self.uncounted = None
-        self.first, self.numbers = {}, array("d")
+        self.first, self.start, self.numbers = {}, {}, array("d")
 
 
 def recorder_for(
