@@ -128,6 +128,4 @@ def _remedy(best: Attempt, tolerance: float) -> str:
     """What lets the tolerance be reached."""
     if best.cells > tolerance:
         return f"the cells leave {best.cells:.2g} of it: refine the grid"
-    if best.found[-1].scheme["options"].get("translation") == "fourier":
-        return "what the cells do not resolve changes with the step: refine the grid"
-    return 'for a smooth density take `translation="fourier"`, or refine the grid'
+    return "what the cells do not resolve changes with the step: refine the grid"

@@ -79,10 +79,11 @@ def solve(
         number n from 2 to 8 runs with ds, ds/2, …, ds/n and combines all of them to
         order 2n (Aitken, Neville), for a scheme whose error has even powers of ds only.
     tolerance : float, optional
-        L1 error of the saved densities that is to be left of the step. Chooses ds and
-        the number of levels: one is added until the estimate is below, and the step is
-        halved where more levels do not help. `ds` and `provenance["levels"]` of the
-        solution tell what was done. What the cells leave is not in it.
+        L1 error of the saved densities that is to be left, of the step and of the
+        cells, for drift_kick with `translation="fourier"`. Chooses ds and the number of
+        levels: one is added until the estimate is below, and the step is halved where
+        more levels do not help. `ds` and `provenance["levels"]` of the solution tell
+        what was done.
     progress : bool or callable
         Show a bar, or call with (steps done, steps in all, s).
     mass_tolerance : float
@@ -144,7 +145,7 @@ def solve(
 
     References
     ----------
-    [KMW09]_, equations (7) and (11); extrapolation as in [Ric11]_.
+    [KMW09]_, equations (7) and (11); extrapolation as in [Ric11]_ and [Gragg65]_.
     """
     p0 = checked_start(checked_scheme(scheme), p0)
     extrapolate = checked_levels(scheme, extrapolate)

@@ -45,6 +45,13 @@ def chosen_step(
         return ds
     check_tolerance(tolerance)
     check_even_powers(scheme, f"`tolerance` = {tolerance:g}")
+    if scheme.options.get("translation") != "fourier":
+        raise ValueError(
+            f"`tolerance` = {tolerance:g} needs a scheme that tells what its cells "
+            f"leave, got {scheme.name} with piecewise interpolation; use "
+            'drift_kick(model, grid, translation="fourier"), or choose `ds` and '
+            "`extrapolate`."
+        )
     if extrapolate is not False:
         raise ValueError(
             f"`extrapolate` must be left out with `tolerance`, got {extrapolate}: "

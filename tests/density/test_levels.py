@@ -9,6 +9,7 @@ from orders import assert_order, measure_order
 from problems import DecayingCirculation
 
 import fpsolve as fp
+from fpsolve.density import passes
 from fpsolve.density.unresolved import unresolved
 from fpsolve.evolution.richardson import tableau
 from fpsolve.grids.diagnostics import l1_distance
@@ -192,18 +193,23 @@ def test_the_step_for_a_tolerance_divides_every_stop():
     assert (found.errors["density_l1"] <= 1e-4).all()
 
 
-def test_where_no_step_reaches_a_tolerance_the_best_is_kept():
-    """Interpolation changes with every step, and is no power of it."""
-    grid = fp.PhaseSpaceGrid(half_width=5.0, shape=(14, 14, 8))
-    p0 = fp.initial.gaussian(grid, (1.0, 0.3), 0.6, 1.0, 2.0)
-    scheme = scheme_on(grid, translation="lagrange", interpolation_order=2)
-    told = r"tolerance 1e-10 not reached: the error is estimated at .*translation="
+def test_where_no_step_reaches_a_tolerance_the_best_is_kept(monkeypatch):
+    monkeypatch.setattr(passes.levels, "MOST_LEVELS", 2)
+    monkeypatch.setattr(passes, "MOST_HALVINGS", 1)
+    told = r"tolerance 1e-07 not reached: the error is estimated at .*refine the grid"
     with pytest.raises(fp.errors.ToleranceError, match=told) as caught:
-        fp.solve(scheme, p0, (0.0, 0.5), tolerance=1e-10, **LAX)
+        fp.solve(scheme_on(), P0, (0.0, 1.0), tolerance=1e-7, **LAX)
     kept = caught.value.solution
-    assert kept.errors["density_l1"][0] == pytest.approx(
-        caught.value.reached, rel=1e-3, abs=1e-12
-    )
+    # Of ds = 1/4 and 1/8 the shorter.
+    assert (kept.ds, kept.provenance["levels"]) == (0.125, 2)
+    assert kept.errors["density_l1"][0] == pytest.approx(caught.value.reached, rel=0.01)
+
+
+def test_a_tolerance_is_refused_where_the_cells_do_not_tell_what_they_leave():
+    """Piecewise interpolation of a narrow start would seem right to 1e-6."""
+    scheme = scheme_on(translation="lagrange")
+    with pytest.raises(ValueError, match=r"got drift_kick with piecewise .*fourier"):
+        fp.solve(scheme, P0, (0.0, 1.0), tolerance=1e-6)
 
 
 @pytest.mark.parametrize("options", [{"extrapolate": 3, "ds": 0.25},
