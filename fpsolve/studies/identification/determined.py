@@ -1,0 +1,77 @@
+"""Which parameters the curve does not determine, and why."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from fpsolve._support.arrays import Array
+
+__all__ = ["check_confined", "loose_noise", "loose_strengths"]
+
+# 1/σ² within so many standard errors of zero is no confinement.
+_DEVIATIONS = 2.0
+# Relative standard error beyond which a parameter is known to a factor only.
+_LOOSE = 0.5
+
+
+def check_confined(strength: Array, errors: Array, length: float) -> None:
+    """Raise ValueError unless both 1/σ² are positive: there is no model without."""
+    for number, (value, error) in enumerate(zip(strength, errors, strict=True), 1):
+        if not value > 0:
+            raise ValueError(
+                f"`curve` must show that the fibre is drawn back in direction {number},"
+                f" got 1/sigma{number}² = {value:.3g} ± {error:.2g} from a length of "
+                f"{length:.4g}; take a longer fibre, or several, and see that `curve` "
+                "has the right reference curve."
+            )
+
+
+def loose_strengths(strength: Array, errors: Array, length: float) -> dict[str, str]:
+    """The throwing ranges that might as well be infinite."""
+    found = {}
+    for number, (value, error) in enumerate(zip(strength, errors, strict=True), 1):
+        if not value > _DEVIATIONS * error:
+            needed = length * (2 * _DEVIATIONS * error / value) ** 2
+            found[f"sigma{number}"] = (
+                f"1/σ{number}² = {value:.3g} ± {error:.2g} is not told from 0: over a "
+                f"length of {length:.4g} the noise turns the fibre more than the force "
+                f"does; about {needed:.2g} are needed"
+            )
+    return found
+
+
+def loose_noise(
+    relaxation_length: float, covariance: Array, gain: float, ds: float
+) -> dict[str, str]:
+    """Of A and K of a smooth fibre those that are known to a factor only.
+
+    Parameters
+    ----------
+    relaxation_length : float
+        R.
+    covariance : ndarray, shape (2, 2)
+        Of (ln A, ln R).
+    gain : float
+        By how much ln p exceeds that of R = 0.
+    ds : float
+    """
+    errors = {
+        "noise": math.sqrt(covariance[0, 0]),
+        "curvature_noise": math.sqrt(float(np.array([1, -1]) @ covariance @ [1, -1])),
+    }
+    if not gain > 0.5 * _DEVIATIONS**2:
+        return {
+            "curvature_noise": f"R = {relaxation_length:.3g} fits better than R = 0 "
+            f"by {max(gain, 0.0):.2g} in ln L only: the curvature relaxes "
+            f"within the distance {ds:.3g} of the points; take points closer together, "
+            'or model="basic"'
+        }
+    return {
+        name: f"its relative standard error is {error:.2g}: the relaxation length "
+        f"R = {relaxation_length:.3g} is known to a factor only, so that one of A and "
+        "K = A/R is; take a longer fibre"
+        for name, error in errors.items()
+        if not error < _LOOSE
+    }

@@ -1,0 +1,328 @@
+"""Parameters by the likelihood of chord angles: its law, estimates, their errors."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+from scipy.stats import multivariate_normal
+
+import fpsolve as fp
+from fpsolve.studies.identification.bootstrap import bootstrapped
+from fpsolve.studies.identification.chord_law import Parameters, chord_law
+from fpsolve.studies.identification.chords import chords_of
+from fpsolve.studies.identification.coordinates import interval
+from fpsolve.studies.identification.determined import loose_strengths
+from fpsolve.studies.identification.likelihood import Likelihood
+from fpsolve.studies.identification.likelihood_basic import (
+    basic_maximum,
+    estimate_basic,
+)
+from fpsolve.studies.identification.likelihood_smooth import (
+    estimate_smooth,
+    smooth_maximum,
+)
+from fpsolve.studies.identification.synthetic import laid_fibres
+
+BELT = fp.MovingBelt(0.3)
+POTENTIAL = fp.QuadraticPotential(1.0, 0.7)
+BASIC = fp.LayDownModel(POTENTIAL, 1.0, BELT)
+SMOOTH = fp.SmoothLayDownModel(POTENTIAL, 0.5, 1.0, BELT)
+TRUTH = {"sigma1": 1.0, "sigma2": 0.7, "noise": 1.0, "curvature_noise": 2.0}
+
+
+def curves(model, n_fibres, length, ds, seed, position_error=0.0):
+    n_points = round(length / ds) + 1
+    eta = laid_fibres(
+        model, n_fibres, n_points, ds, seed=seed, position_error=position_error
+    )
+    return [
+        fp.FibreCurve(one, ds, model.curve, position_error=position_error)
+        for one in eta
+    ]
+
+
+@pytest.fixture(scope="module")
+def basic_curves():
+    return curves(BASIC, 6, 400.0, 0.2, 11)
+
+
+@pytest.fixture(scope="module")
+def smooth_curves():
+    return curves(SMOOTH, 6, 400.0, 0.2, 12)
+
+
+def scores(estimate):
+    """(found - true)/(standard error) where the likelihood is even."""
+    errors = np.sqrt(np.diagonal(estimate.covariance))
+    found = []
+    for (name, value), error in zip(estimate.parameters.items(), errors, strict=True):
+        if name.startswith("sigma"):
+            found.append((value**-2 - TRUTH[name] ** -2) / (2 * value**-3 * error))
+        else:
+            found.append(math.log(value / TRUTH[name]) * value / error)
+    return found
+
+
+def variogram_of_means(variogram, lag, ds):
+    """E(ᾱ_{j+lag} - ᾱ_j)² of means over ds from V(h) = E(α_{s+h} - α_s)²."""
+
+    def averaged(shift):
+        # Differences of two uniform numbers in a step have a triangular density.
+        value, _ = quad(
+            lambda u: (1 - abs(u)) * variogram(abs(u + shift) * ds), -1, 1, points=[0]
+        )
+        return value
+
+    return averaged(lag) - averaged(0)
+
+
+@pytest.mark.parametrize("relaxation_length", [0.0, 0.05, 0.4, 3.0])
+def test_angles_without_force_have_the_gaussian_law_of_means_of_the_angle(
+    relaxation_length,
+):
+    # An independent way: the dense covariance of increments, by quadrature of the
+    # variogram of α, exact for both models.
+    A, R, ds, n = 1.3, relaxation_length, 0.2, 9
+
+    def variogram(h):
+        return A**2 * (h + (R * math.expm1(-h / R) if R else 0.0))
+
+    V = [variogram_of_means(variogram, lag, ds) for lag in range(n)]
+    law = chord_law(Parameters((0.0, 0.0), A, R), ds)
+    # As white noise of the angle, which adds twice its variance to every increment.
+    V = np.array([v + 2 * law.chord_variance * (lag > 0) for lag, v in enumerate(V)])
+    lags = np.abs(np.subtract.outer(np.arange(n - 1), np.arange(n - 1)))
+    covariance = 0.5 * (V[lags + 1] + V[np.abs(lags - 1)] - 2 * V[lags])
+    angles = np.concatenate([[0.4], 0.4 + np.cumsum(0.3 * np.sin(np.arange(1, n)))])
+    chord = ds * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    eta = np.concatenate([[[0.0, 0.0]], np.cumsum(chord, axis=0)])
+    likelihood = Likelihood([chords_of(eta, np.zeros_like(eta), ds)], ds)
+    found = likelihood.densities(Parameters((0.0, 0.0), A, R))[1].sum()
+    exact = multivariate_normal(np.zeros(n - 1), covariance).logpdf(np.diff(angles))
+    # Nothing is known of the first angle to a variance of 1e5, which rounds to 1e-7.
+    assert found == pytest.approx(exact, abs=1e-4)
+
+
+def test_increments_of_mean_angles_of_the_basic_model_are_a_moving_average():
+    V = [variogram_of_means(lambda h: h, lag, 1.0) for lag in range(4)]
+    assert V[1] == pytest.approx(2 / 3, rel=1e-8)
+    # Covariance of neighbours (V₂ - 2V₁)/2 = 1/6, a quarter of the variance; then none.
+    assert 0.5 * (V[2] - 2 * V[1]) == pytest.approx(1 / 6, rel=1e-8)
+    assert 0.5 * (V[3] - 2 * V[2] + V[1]) == pytest.approx(0.0, abs=1e-8)
+
+
+def test_the_angle_of_a_chord_differs_from_the_mean_angle_as_the_law_says():
+    # Both of the same Brownian paths, so that only the difference has an error.
+    A2h, m, n = 0.4, 24, 40_000
+    steps = np.random.default_rng(5).standard_normal((n, 2 * m)) * math.sqrt(A2h / m)
+    alpha = np.cumsum(steps, axis=1) - 0.5 * steps
+    halves = alpha.reshape(n, 2, m)
+    chord = np.angle(np.exp(1j * (halves - halves[:, :1, :1])).mean(axis=2))
+    mean = (halves - halves[:, :1, :1]).mean(axis=2)
+    excess = np.diff(chord).ravel() ** 2 - np.diff(mean).ravel() ** 2
+    law = chord_law(Parameters((0.0, 0.0), math.sqrt(A2h)), 1.0)
+    assert law.chord_variance == pytest.approx(A2h**2 / 360)
+    error = excess.std() / math.sqrt(n)
+    # Next order in A²h: a tenth of the term.
+    assert excess.mean() == pytest.approx(2 * law.chord_variance, abs=3 * error + 2e-4)
+    assert excess.mean() > 3 * error
+
+
+def test_the_force_changes_with_the_chord_as_its_slope_says(smooth_curves):
+    curve = smooth_curves[0]
+    eta, xi = curve.pieces[0][:6], curve.deviations[0][:6]
+    gamma, turn = eta - xi, 1e-5
+    forces = []
+    for angle in (-turn, turn):
+        c, s = math.cos(angle), math.sin(angle)
+        moved = eta.copy()
+        moved[5] = eta[4] + np.array([[c, -s], [s, c]]) @ (eta[5] - eta[4])
+        forces.append(chords_of(moved, gamma, curve.ds).forces[4])
+    difference = (forces[1] - forces[0]) / (2 * turn)
+    slopes = chords_of(eta, gamma, curve.ds).slopes[4]
+    # Differences of order 2 over 1e-5.
+    assert slopes == pytest.approx(difference, rel=1e-6, abs=1e-8)
+
+
+def test_forces_along_a_circle_are_its_line_integrals():
+    # ξ = r(cos, sin): ∫ ξ1 dη2 = ∫ r² cos², and the trapezoidal rule errs by O(Δs²).
+    errors = []
+    for n in (40, 80, 160, 320):
+        t = np.linspace(0.0, 1.0, n + 1)
+        eta = 2.0 * np.stack([np.cos(t), np.sin(t)], axis=1)
+        chords = chords_of(eta, np.zeros_like(eta), 2.0 / n)
+        exact = 4.0 * (0.5 + math.sin(2.0) / 4)
+        errors.append(abs(2.0 / n * chords.forces[:, 0].sum() - exact))
+    orders = np.log2(np.divide(errors[:-1], errors[1:]))
+    assert orders == pytest.approx([2.0, 2.0, 2.0], abs=0.02)
+
+
+def test_the_basic_law_is_the_limit_of_the_smooth_one(basic_curves):
+    likelihood = Likelihood.of(basic_curves[0])
+    at = (1.0, 2.0, math.log(1.1))
+    basic = likelihood(np.array(at))
+    lengths = (4e-4, 1e-4, 1e-6)
+    away = [abs(likelihood(np.array([*at, math.log(R)])) - basic) for R in lengths]
+    # Of first order in R/Δs, beside what lower orders of the first chord leave.
+    assert away[1] < 0.5 * away[0]
+    assert away[2] < 0.02 * away[0]
+    assert away[0] < 0.1
+
+
+def test_several_fibres_are_as_likely_as_each_by_itself(smooth_curves):
+    both = fp.FibreCurve([one.eta for one in smooth_curves[:2]], 0.2, BELT)
+    at = np.array([1.0, 2.0, 0.1, -0.6])
+    parts = [Likelihood.of(one)(at) for one in smooth_curves[:2]]
+    assert Likelihood.of(both)(at) == pytest.approx(sum(parts), rel=1e-13)
+
+
+@pytest.mark.parametrize("which", ["basic", "smooth"])
+def test_true_parameters_are_within_what_the_errors_say(
+    which, basic_curves, smooth_curves
+):
+    smooth = which == "smooth"
+    estimate, data = (
+        (estimate_smooth, smooth_curves) if smooth else (estimate_basic, basic_curves)
+    )
+    z = np.array([scores(estimate(curve)) for curve in data])
+    # Six fibres: a mean of 3.5/√6, and the bias of Δs = 0.2, a quarter of an error.
+    assert np.abs(z.mean(axis=0)).max() < 3.5 / math.sqrt(6) + 0.25
+    # χ² of 6 degrees beyond 24.1 comes once in 2000, below 0.2 as well.
+    squares = (z**2).sum(axis=0)
+    assert squares.min() > 0.2
+    assert squares.max() < 24.1
+
+
+def test_errors_are_those_of_the_expected_information(basic_curves):
+    curve = basic_curves[0]
+    found = estimate_basic(curve)
+    n = len(curve.eta) - 2
+    error = math.sqrt(found.covariance[2, 2]) / found.parameters["noise"]
+    # Cramér-Rao: a variance of n Gaussian numbers. The force depends on A by the
+    # Jacobian only.
+    assert error == pytest.approx((2 * n) ** -0.5, rel=0.03)
+    # Of 1/σ², A²/∫f² ds: both forces together, which are nearly orthogonal.
+    forces = Likelihood.of(curve).fibres[0].forces
+    bound = np.linalg.inv(curve.ds * forces.T @ forces) * found.parameters["noise"] ** 2
+    slope = np.diag(
+        [-0.5 * found.parameters[name] ** 3 for name in ("sigma1", "sigma2")]
+    )
+    expected = np.sqrt(np.diagonal(slope @ bound @ slope))
+    observed = np.sqrt(np.diagonal(found.covariance)[:2])
+    # Chord by chord the sums are means over two, which lose O(Δs²) of the force.
+    assert observed == pytest.approx(expected, rel=0.1)
+
+
+def test_innovations_are_white(smooth_curves):
+    likelihood = Likelihood.of(smooth_curves[1])
+    at = Parameters((1.0, 0.7**-2), 1.0, 0.5)
+    z = likelihood.densities(at)[0]
+    n = len(z)
+    assert abs(z.mean()) < 3.5 / math.sqrt(n)
+    assert abs(z.var() - 1) < 3.5 * math.sqrt(2 / n)
+    for lag in (1, 2, 3):
+        assert abs(np.mean(z[lag:] * z[:-lag])) < 3.5 / math.sqrt(n)
+
+
+def test_the_beginning_of_a_fibre_is_as_likely_as_the_rest():
+    # What is known of κ before the first chord: its spread by noise and by force, the
+    # latter the larger one here. Without it the first innovations reach 10.
+    model = fp.SmoothLayDownModel(fp.QuadraticPotential(), 5.0, 2.0, BELT)
+    at = Parameters((1.0, 1.0), 2.0, 5.0)
+    first = np.array(
+        [
+            Likelihood.of(one).densities(at)[0, 0]
+            for one in curves(model, 24, 5.0, 0.1, 2)
+        ]
+    )
+    # 24 squares of normal numbers.
+    assert np.mean(first**2) < 1 + 3.5 * math.sqrt(2 / 24)
+
+
+def test_likelihoods_choose_the_model_that_made_the_fibre(basic_curves, smooth_curves):
+    smooth, basic = (f(smooth_curves[0]) for f in (estimate_smooth, estimate_basic))
+    # Of smooth fibres by hundreds; of basic ones a parameter more is worth about ½.
+    assert smooth.log_likelihood > basic.log_likelihood + 100
+    smooth, basic = (f(basic_curves[0]) for f in (estimate_smooth, estimate_basic))
+    assert -0.1 < smooth.log_likelihood - basic.log_likelihood < 5
+
+
+def test_a_relaxation_length_below_the_distance_of_points_is_left_open(basic_curves):
+    found = estimate_smooth(basic_curves[0])
+    assert "take points closer together" in found.undetermined["curvature_noise"]
+    assert set(found.undetermined) == {"curvature_noise"}
+    assert np.isfinite(found.covariance[:3, :3]).all()
+
+
+def test_a_short_noisy_fibre_does_not_determine_the_throwing_range():
+    # Standard errors of 1/σ² are A√(2/L) = 2 here, and 1/σ² is 1.
+    model = fp.LayDownModel(fp.QuadraticPotential(), 6.0)
+    maxima = [
+        basic_maximum(Likelihood.of(one)) for one in curves(model, 6, 18.0, 0.012, 3)
+    ]
+    open_ = set()
+    for found in maxima:
+        errors = np.sqrt(np.diagonal(found.covariance()))
+        reasons = loose_strengths(found.at[:2], errors[:2], 18.0)
+        open_ |= set(reasons)
+        assert all("is not told from 0" in reason for reason in reasons.values())
+    assert open_ == {"sigma1", "sigma2"}
+
+
+def test_a_fibre_that_is_driven_away_is_refused():
+    # dα = +∇B·τ⊥ ds + dW: every range the square root of a negative number.
+    rng, ds, alpha, xi = np.random.default_rng(8), 0.02, 0.0, np.array([1.0, 1.0])
+    eta = [xi]
+    for noise in rng.standard_normal(400):
+        alpha += ds * (xi[1] * math.cos(alpha) - xi[0] * math.sin(alpha))
+        alpha += 0.3 * math.sqrt(ds) * noise
+        xi = xi + ds * np.array([math.cos(alpha), math.sin(alpha)])
+        eta.append(xi)
+    driven = fp.FibreCurve(np.array(eta), ds, fp.FixedBelt())
+    with pytest.raises(ValueError, match="must show that the fibre is drawn back"):
+        estimate_basic(driven)
+
+
+def test_errors_of_points_are_told_from_the_noise_of_the_fibre():
+    # 0.005 of points 0.2 apart: angles of chords scatter by 0.035, their increments by
+    # √6 · 0.025 = 0.06, beside 0.2 of the fibre itself.
+    (curve,) = curves(SMOOTH, 1, 400.0, 0.2, 21, position_error=0.005)
+    told = estimate_smooth(curve)
+    assert np.abs(scores(told)).max() < 3.5
+    # Taken as exact, the scatter is curvature that relaxes at once. Such a curve is
+    # refused, for its chords are longer than Δs; the likelihood itself does not know.
+    untold = smooth_maximum(Likelihood(Likelihood.of(curve).fibres, curve.ds))
+    length = told.parameters["noise"] / told.parameters["curvature_noise"]
+    assert math.exp(untold.at[3]) < 0.8 * length
+
+
+def test_unknown_reference_curves_and_coarse_points_are_refused(basic_curves):
+    with pytest.raises(ValueError, match="`curve` must be known"):
+        estimate_basic(fp.FibreCurve(basic_curves[0].eta, 0.2))
+    with pytest.raises(TypeError, match="`curve` must be a FibreCurve"):
+        estimate_smooth(basic_curves[0].eta)
+    coarse = fp.FibreCurve(basic_curves[0].eta[::4], 0.8, BELT)
+    with pytest.raises(ValueError, match="the angle cannot be unwrapped"):
+        estimate_basic(coarse)
+
+
+def test_intervals_are_even_where_the_likelihood_is():
+    low, high = interval("sigma1", 1.0, 0.1, 1.96)
+    assert low**-2 - 1 == pytest.approx(1 - high**-2) == pytest.approx(2 * 0.196)
+    assert interval("sigma2", 1.0, 0.3, 1.96)[1] == math.inf
+    low, high = interval("noise", 2.0, 0.2, 1.0)
+    assert low * high == pytest.approx(4.0)
+    assert high == pytest.approx(2 * math.exp(0.1))
+
+
+def test_the_bootstrap_finds_the_errors_of_the_likelihood(basic_curves):
+    found = estimate_basic(basic_curves[1])
+    again = bootstrapped(found, basic_curves[1], estimate_basic, 24, seed=4)
+    ratio = np.sqrt(np.diagonal(again.covariance) / np.diagonal(found.covariance))
+    # A standard deviation of 24 numbers is good to 0.15 of itself; 3.5 of these.
+    assert ratio == pytest.approx(np.ones(3), abs=0.53)
+    same = bootstrapped(found, basic_curves[1], estimate_basic, 24, seed=4)
+    assert np.array_equal(again.covariance, same.covariance)
+    with pytest.raises(ValueError, match="`n` must be at least 10"):
+        bootstrapped(found, basic_curves[1], estimate_basic, 3, seed=1)
