@@ -255,6 +255,17 @@ def test_a_relaxation_length_below_the_distance_of_points_is_left_open(basic_cur
     assert np.isfinite(found.covariance[:3, :3]).all()
 
 
+def test_of_a_relaxation_length_beyond_the_fibre_only_the_curvature_noise_is_known():
+    # A fibre of five relaxation lengths: R and A = RK are known to a factor, K is.
+    model = fp.SmoothLayDownModel(fp.QuadraticPotential(), 20.0, 10.0, BELT)
+    found = estimate_smooth(curves(model, 3, 100.0, 0.1, 5)[2])
+    assert "known to a factor only" in found.undetermined["noise"]
+    assert "curvature_noise" not in found.undetermined
+    error = math.sqrt(found.covariance[3, 3])
+    assert error < 0.03
+    assert abs(found.parameters["curvature_noise"] - 0.5) < 3.5 * error
+
+
 def test_a_short_noisy_fibre_does_not_determine_the_throwing_range():
     # Standard errors of 1/σ² are A√(2/L) = 2 here, and 1/σ² is 1.
     model = fp.LayDownModel(fp.QuadraticPotential(), 6.0)

@@ -19,8 +19,9 @@ __all__ = ["Maximum", "maximum", "observed_information"]
 _SHARE = 0.1
 # Newton steps at most, and how many standard errors from the end they may stop.
 _N_STEPS, _CLOSE = 12, 0.05
-# Curvature per square of a standard error, expected to be about 1, that counts as none.
-_FLAT = 1e-3
+# Curvature per square of the standard error for known other coordinates that counts as
+# none: coordinates that go together may have errors of a hundred times that.
+_FLAT = 1e-5
 
 Function = Callable[[Array], float]
 
