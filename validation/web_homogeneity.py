@@ -26,12 +26,18 @@ from fpsolve.plotting import plot_web_homogeneity  # noqa: E402
 
 UNIT = fp.QuadraticPotential()
 ZONES = (0.1, 0.3, 1.0, 3.0, 10.0)
-# Noises, belt speeds, distances, positions.
-QUICK = [((1.0,), (0.3,), (1.0,), "regular")]
+# Noises, belt speeds, distances, positions, relaxation length.
+QUICK = [
+    ((1.0,), (0.3,), (1.0,), "regular", None),
+    ((3.0,), (0.3,), (1.0,), "regular", 0.1),
+]
 FULL = [
-    ((1.0,), (0.02, 0.1, 0.3), (0.1, 1.0, 4.0), "regular"),
-    ((10.0,), (0.1, 0.3), (1.0, 4.0), "regular"),
-    ((1.0,), (0.1,), (0.1, 1.0, 4.0), "random"),
+    ((1.0,), (0.02, 0.1, 0.3), (0.1, 1.0, 4.0), "regular", None),
+    ((10.0,), (0.1, 0.3), (1.0, 4.0), "regular", None),
+    ((1.0,), (0.1,), (0.1, 1.0, 4.0), "random", None),
+    ((1.0,), (0.1, 0.3), (0.1, 1.0, 4.0), "regular", 0.1),
+    ((10.0,), (0.1, 0.3), (1.0, 4.0), "regular", 0.1),
+    ((3.0,), (0.1,), (0.1, 1.0, 4.0), "random", 0.5),
 ]
 # Once in so many studies chance alone goes beyond the bound.
 ONCE_IN = 100
@@ -44,7 +50,8 @@ def check(report: Report, dataset: Any) -> None:
     for place in np.ndindex(z.shape):
         one = dataset.isel(dict(zip(dataset["z"].dims, place, strict=True)))
         rows.append({
-            "A": float(one["noise"]), "v": float(one["belt_speed"]),
+            "A": float(one["noise"]), "R": dataset.attrs.get("relaxation_length", 0.0),
+            "v": float(one["belt_speed"]),
             "d": float(one["spacing"]), "positions": dataset.attrs["positions"],
             "side": float(one["zone"]), "predicted": float(one["predicted"]),
             "error": float(one["predicted_error"]), "laid": float(one["simulated"]),
@@ -54,7 +61,8 @@ def check(report: Report, dataset: Any) -> None:
     n_webs = int(dataset.attrs["n_webs"])
     bound = float(stdtrit(n_webs - 1, 1 - 0.5 / (ONCE_IN * z.size)))
     noise = float(dataset["noise"][0])
-    name = f"A = {noise:g}, {dataset.attrs['positions']} positions: largest |z|"
+    about = f"A = {noise:g}, R = {dataset.attrs.get('relaxation_length', 0.0):g}"
+    name = f"{about}, {dataset.attrs['positions']} positions: largest |z|"
     # The largest of what holds a NaN is NaN, which fails.
     report.check(name, float(np.abs(z).max()), "<", bound)
 
@@ -65,15 +73,17 @@ def main() -> None:
     parser.add_argument("--directory", help="keep finished cases here")
     options = parser.parse_args()
     report = Report("web_homogeneity", options.quick)
-    for noises, speeds, spacings, positions in QUICK if options.quick else FULL:
+    for noises, speeds, spacings, positions, length in QUICK if options.quick else FULL:
         dataset = studies.web_homogeneity(
             UNIT, noises, speeds, spacings, positions=positions, workers=0,
+            relaxation_length=length,
             zones=ZONES[:4] if options.quick else ZONES,
             directory=options.directory,
         )  # fmt: skip
         check(report, dataset)
         if not options.quick:
-            name = f"web_homogeneity_{positions}_{noises[0]:g}.png"
+            kind = "basic" if length is None else "smooth"
+            name = f"web_homogeneity_{kind}_{positions}_{noises[0]:g}.png"
             save_figure(plot_web_homogeneity(dataset), name)
     report.finish()
 

@@ -13,7 +13,13 @@ from fpsolve.cli.console import print_pairs, print_table
 from fpsolve.cli.frame import command
 from fpsolve.cli.options import POSITIONS, NoFigures, Out, proposing
 from fpsolve.cli.potentials import PARAMETERS, Kind, Noise, Parameters, with_parameters
-from fpsolve.cli.web import BeltSpeed, Spacing, options_of_model, tables_of
+from fpsolve.cli.web import (
+    BeltSpeed,
+    RelaxationLength,
+    Spacing,
+    options_of_model,
+    tables_of,
+)
 
 if TYPE_CHECKING:
     from fpsolve.cli.config.web import WebConfig
@@ -68,6 +74,7 @@ def predict(
     potential: Kind = "quadratic",
     noise: Noise = 1.0,
     belt_speed: BeltSpeed = 0.1,
+    relaxation_length: RelaxationLength = None,
     parameters: Parameters = PARAMETERS,
     no_figures: NoFigures = False,
 ) -> None:
@@ -85,7 +92,7 @@ def predict(
         made, options = parameters.make(potential), options_of_model(context)
         physics = {
             "potential": made.to_dict(),
-            "model": {"noise": noise},
+            "model": {"noise": noise, "relaxation_length": relaxation_length},
             "curve": {"kind": "moving_belt", "speed": belt_speed},
         }
         chosen = _config(tables_of(config, physics, options))
@@ -102,7 +109,10 @@ def predict(
         found = predict_web(model, **asked)
         print_prediction(found, "" if chosen.process is None else " m")
         toml = chosen.to_toml()
-        of_model = {"potential": made, "noise": noise, "belt_speed": belt_speed}
+        of_model = {
+            "potential": made, "noise": noise, "belt_speed": belt_speed,
+            "relaxation_length": relaxation_length,
+        }  # fmt: skip
         used = command_line(
             "predict", *([] if config is None else [str(config)]), spacing=spacing,
             positions=positions, zone=zone, band=band, tolerance=tolerance,

@@ -24,7 +24,14 @@ from fpsolve.cli.potentials import PARAMETERS, Kind, Noise, Parameters, with_par
 if TYPE_CHECKING:
     from fpsolve.cli.config.web import WebConfig
 
-__all__ = ["BeltSpeed", "Spacing", "options_of_model", "tables_of", "web"]
+__all__ = [
+    "BeltSpeed",
+    "RelaxationLength",
+    "Spacing",
+    "options_of_model",
+    "tables_of",
+    "web",
+]
 
 _OF_FILE = "of the file"
 # What belongs to a model without units, which stands in the place of a file.

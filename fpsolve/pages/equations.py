@@ -17,6 +17,7 @@ __all__ = [
     "mathml",
     "model_equations",
     "potential_equation",
+    "smooth_fokker_planck",
 ]
 
 
@@ -88,4 +89,14 @@ def fokker_planck() -> Equation:
         r" - \partial_\alpha(\nabla B\cdot\tau^\perp p)"
         r" = \frac{A^2}{2}\,\partial_{\alpha\alpha} p",
         "∂ₛp + τ(α)·∇p - ∂_α(∇B·τ⊥ p) = (A²/2) ∂_αα p",
+    )
+
+
+def smooth_fokker_planck() -> Equation:
+    """Return equation (23), of a belt at rest, for studies over the noise A."""
+    return mathml(
+        r"\partial_s p + \tau\cdot\nabla_\xi p + \kappa\,\partial_\alpha p"
+        r" - \frac1R\,\partial_\kappa((\kappa + \nabla B\cdot\tau^\perp) p)"
+        r" = \frac{A^2}{2R^2}\,\partial_{\kappa\kappa} p",
+        "∂ₛp + τ·∇p + κ ∂_α p - ∂_κ((κ + ∇B·τ⊥) p)/R = (A²/2R²) ∂_κκ p",
     )

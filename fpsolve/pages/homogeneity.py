@@ -8,7 +8,7 @@ import numpy as np
 
 from fpsolve._support.declared import declared
 from fpsolve.pages.blocks import Facts, Part, Section, Table
-from fpsolve.pages.equations import fokker_planck
+from fpsolve.pages.equations import fokker_planck, smooth_fokker_planck
 from fpsolve.pages.figures import drawings
 from fpsolve.pages.studies import (
     cases_blocks,
@@ -37,6 +37,11 @@ def section(dataset: xr.Dataset, source: str) -> Section:
     items = [
         ("potential", f"B = {about['formula']}"),
         ("noises A", listed(dataset["noise"])),
+        *(
+            [("relaxation length R", f"{about['relaxation_length']:g}")]
+            if "relaxation_length" in about
+            else []
+        ),
         ("belt speeds v", listed(dataset["belt_speed"])),
         ("distances d", listed(dataset["spacing"])),
         ("positions", str(about["positions"])),
@@ -45,7 +50,9 @@ def section(dataset: xr.Dataset, source: str) -> Section:
         ("step", f"ds = {about['ds']:g}" if "ds" in about else "chosen by `lay_web`"),
         ("tolerance of the prediction", f"{about['tolerance']:g}"),
     ]
-    equations = [fokker_planck(), *potential_equations(dataset)]
+    smooth = "relaxation_length" in about
+    equation = smooth_fokker_planck() if smooth else fokker_planck()
+    equations = [equation, *potential_equations(dataset)]
     return Section("Laid and predicted webs", source, [
         Part("Summary", cases_blocks(dataset)),
         Part("Equation", equations),

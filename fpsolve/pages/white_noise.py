@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from fpsolve._support.declared import declared
 from fpsolve.pages.blocks import Facts, Part, Section
-from fpsolve.pages.equations import fokker_planck, mathml
+from fpsolve.pages.equations import fokker_planck, smooth_fokker_planck
 from fpsolve.pages.figures import drawings
 from fpsolve.pages.limits import large_rows, table_of
 from fpsolve.pages.studies import (
@@ -49,13 +49,7 @@ def white_section(dataset: xr.Dataset, source: str) -> Section:
         )
     ]
     caption = "Distance of smooth fibres from the basic model with the same noise A."
-    smooth = mathml(
-        r"\partial_s p + \tau\cdot\nabla_\xi p + \kappa\,\partial_\alpha p"
-        r" - \frac1R\,\partial_\kappa((\kappa + \nabla B\cdot\tau^\perp) p)"
-        r" = \frac{A^2}{2R^2}\,\partial_{\kappa\kappa} p",
-        "∂ₛp + τ·∇p + κ ∂_α p - ∂_κ((κ + ∇B·τ⊥) p)/R = (A²/2R²) ∂_κκ p",
-    )
-    equations = [smooth, fokker_planck(), *potential_equations(dataset)]
+    equations = [smooth_fokker_planck(), fokker_planck(), *potential_equations(dataset)]
     return Section("Smooth fibres and their white-noise limit", source, [
         Part("Summary", cases_blocks(dataset)),
         Part("Equation and its limit", equations),

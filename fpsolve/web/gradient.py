@@ -8,10 +8,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fpsolve._support.arrays import Array
+from fpsolve.spectral.resolvent.fibre import COARSE, FINE, differentiable
 from fpsolve.spectral.resolvent.generator import Generator
 from fpsolve.spectral.resolvent.ladder import Ladder
 from fpsolve.spectral.resolvent.plane_waves import plane_wave, wave_derivative
-from fpsolve.web.coherent import COARSE, END, FINE, Bounded, harmonics_of
+from fpsolve.web.coherent import END, Bounded, harmonics_of
 from fpsolve.web.prediction import WebPrediction
 from fpsolve.web.table import SpectrumTable
 from fpsolve.web.zone_variance import window_integrals, zone_variance
@@ -48,7 +49,9 @@ def with_gradient(
     ]
     values, errors = np.moveaxis(np.array(squares), 0, 2) / (2 * found.cv)
     errors = errors + np.abs(values) * found.errors / found.cv
-    strips = strip_gradient(table.source.ladder, spacing, found.strips.size)
+    strips = strip_gradient(
+        differentiable(table.source.ladder), spacing, found.strips.size
+    )
     factors = np.array([[math.sqrt(unit), 1.0, *(1 / unit,) * 3]]).T
     return replace(
         found,
@@ -76,7 +79,7 @@ def square_gradient(
     variance: tuple[float, float],
 ) -> Bounded:
     """∂CV² of a zone, CV² = |v| d I + C with I of Ŝ and C of the means of fibres."""
-    ladder = table.source.ladder
+    ladder = differentiable(table.source.ladder)
     n = len(Generator.parameters)
     speed = float(ladder.model.curve.speed)
     values, errors = np.zeros((2, n + 1))

@@ -10,17 +10,14 @@ from numpy.typing import ArrayLike
 
 from fpsolve._support.arrays import Array, check_finite_numbers
 from fpsolve._support.blas import one_blas_thread
-from fpsolve._support.checks import check_one_of, check_positive, shown
+from fpsolve._support.checks import check_flag, check_one_of, check_positive, shown
 from fpsolve.errors import ToleranceError
 from fpsolve.evolution.call import recorded
+from fpsolve.model.fibre import FibreModel
 from fpsolve.model.laydown import LayDownModel
 from fpsolve.model.process import Process
-from fpsolve.spectral.evolution.quadratic import (
-    check_model,
-    checked_tolerance,
-    quadratic,
-)
-from fpsolve.spectral.resolvent.ladder import Ladder
+from fpsolve.spectral.evolution.quadratic import checked_tolerance, quadratic
+from fpsolve.spectral.resolvent.fibre import Fibre, check_quadratic_fibre, fibre_of
 from fpsolve.web import coherent
 from fpsolve.web.band_power import band_power
 from fpsolve.web.gradient import of_process, with_gradient
@@ -43,7 +40,7 @@ SHARE = 0.5
 @recorded()
 @one_blas_thread()
 def predict_web(
-    model: LayDownModel | Process,
+    model: FibreModel | Process,
     *,
     spacing: float,
     zones: ArrayLike,
@@ -66,9 +63,12 @@ def predict_web(
     of A, ∂Ŝ = 2 Re (∂E u − λ ∂A u), Aᵀλ = E. The polynomials are kept while σ_i
     changes. Of a process the derivatives are those in its own numbers in SI units.
 
+    Of smooth fibres Ŝ takes seconds to minutes, the more the longer R/σ and the smaller
+    the noise; their derivatives are not known.
+
     Parameters
     ----------
-    model : LayDownModel or Process
+    model : LayDownModel, SmoothLayDownModel or Process
         With a `QuadraticPotential` and a belt at constant speed v ≠ 0. Of a process
         all lengths are metres.
     spacing : float
@@ -92,7 +92,8 @@ def predict_web(
     Raises
     ------
     ValueError
-        As `web_spectrum`, or if the belt is at rest, or a length is not positive.
+        As `web_spectrum`, or if the belt is at rest, a length is not positive, or
+        `gradients` of a smooth fibre are asked for.
     ToleranceError
         If the spectrum is not known to the tolerance.
 
@@ -102,16 +103,22 @@ def predict_web(
     """
     unit = model.length if isinstance(model, Process) else 1.0
     fibre: Any = model.model if isinstance(model, Process) else model
-    check_model(fibre)
+    check_quadratic_fibre(fibre)
+    gradients = check_flag("gradients", gradients)
+    if gradients and not isinstance(fibre, LayDownModel):
+        raise ValueError(
+            "`gradients` are those of the basic model, got a smooth one; compare "
+            "predictions for two values of a parameter."
+        )
     found = of_model(
         fibre, unit, check_positive("spacing", spacing), zones, positions,
-        checked_bands(bands), checked_tolerance(tolerance), bool(gradients),
+        checked_bands(bands), checked_tolerance(tolerance), gradients,
     )  # fmt: skip
     return of_process(found) if isinstance(model, Process) else found
 
 
 def of_model(
-    model: LayDownModel,
+    model: FibreModel,
     unit: float,
     spacing: float,
     zones: ArrayLike,
@@ -129,7 +136,7 @@ def of_model(
     distance = spacing / unit
     check_one_of("positions", positions, POSITIONS)
     sides = checked_zones(zones, unit, model)
-    ladder = Ladder(model)
+    ladder = fibre_of(model)
     table, variances, errors = refined(ladder, sides / unit, tolerance, gradients)
     per_line = abs(model.curve.speed) * distance
     of_positions = getattr(coherent, f"{positions}_positions")
@@ -155,7 +162,7 @@ def of_model(
 
 
 def refined(
-    ladder: Ladder, sides: Array, tolerance: float, gradients: bool = False
+    ladder: Fibre, sides: Array, tolerance: float, gradients: bool = False
 ) -> tuple[SpectrumTable, Array, Array]:
     """A table fine enough for all zones, their variances and bounds of the errors."""
     # CV² is wrong by twice as much as CV.
@@ -175,7 +182,7 @@ def refined(
         table = table.finer(axis)
 
 
-def checked_zones(zones: ArrayLike, unit: float, model: LayDownModel) -> Array:
+def checked_zones(zones: ArrayLike, unit: float, model: FibreModel) -> Array:
     """Sides as an array; ValueError unless each is positive and of a possible size."""
     sides = np.atleast_1d(check_finite_numbers("zones", zones)).ravel()
     if not sides.size:

@@ -13,7 +13,7 @@ from fpsolve.evolution.call import Call
 from fpsolve.evolution.layout import Attribute, Layout, Part, Source, Stored, Variable
 from fpsolve.evolution.parts import Model
 from fpsolve.evolution.saved import Saved
-from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.fibre import FibreModel
 
 __all__ = ["POSITIONS", "WebPrediction"]
 
@@ -83,7 +83,7 @@ class WebPrediction(Saved):
 
     Attributes
     ----------
-    model : LayDownModel or None
+    model : LayDownModel, SmoothLayDownModel or None
         None where it was read back and is a user's own.
     spacing : float
         Distance d of the spinning positions across the belt.
@@ -120,7 +120,7 @@ class WebPrediction(Saved):
     kind: ClassVar[str] = "web-prediction"
     layout = PREDICTION
 
-    model: LayDownModel | None
+    model: FibreModel | None
     spacing: float
     length: float
     positions: str

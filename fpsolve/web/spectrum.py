@@ -9,10 +9,9 @@ from numpy.typing import ArrayLike
 
 from fpsolve._support.arrays import Array, check_finite_numbers
 from fpsolve._support.blas import one_blas_thread
-from fpsolve.model.laydown import LayDownModel
-from fpsolve.spectral.evolution.quadratic import check_model, checked_tolerance
-from fpsolve.spectral.resolvent.fibre_spectrum import fibre_spectrum
-from fpsolve.spectral.resolvent.ladder import Ladder
+from fpsolve.model.fibre import FibreModel
+from fpsolve.spectral.evolution.quadratic import checked_tolerance
+from fpsolve.spectral.resolvent.fibre import check_quadratic_fibre, fibre_of
 
 __all__ = ["WebSpectrum", "web_spectrum"]
 
@@ -52,7 +51,7 @@ class WebSpectrum(np.ndarray[Any, np.dtype[np.float64]]):
 
 @one_blas_thread()
 def web_spectrum(
-    model: LayDownModel, k1: ArrayLike, k2: ArrayLike, *, tolerance: float = 1e-3
+    model: FibreModel, k1: ArrayLike, k2: ArrayLike, *, tolerance: float = 1e-3
 ) -> WebSpectrum:
     """Ŝ(k) = 2 Re E e^{−ik·ξ} (i k1 v − L)⁻¹ (e^{ik·ξ} − E e^{ik·ξ}).
 
@@ -69,9 +68,15 @@ def web_spectrum(
     Long waves end in Ŝ = k·C k, no fibre gets lost: C = 2 E ξ (−L)⁻¹ (ξ − E ξ), which
     is used up to |k| = 1e-3 of what it forgets over, so that tiny k lose no digits.
 
+    Of a smooth fibre the functions have a third factor, Hermite polynomials of κ, and
+    Gaussians that leave the law its wider tails. Short waves see arcs instead of
+    straight pieces, Ŝ lacks (π/12|k|³) Σ± (f₂⁗ − 2f₂″ − 3f₂)(β ± π/2), f₂ = E[κ² | α]
+    f, and then O(|k|⁻⁴) of it, which is measured where waves are short against 1/σ,
+    the radius of curvature, and (R/A)^(2/3).
+
     Parameters
     ----------
-    model : LayDownModel
+    model : LayDownModel or SmoothLayDownModel
         With a `QuadraticPotential` and a belt at rest or at constant speed.
     k1, k2 : array_like
         Wave numbers along and across the belt in radians per unit of ξ; they broadcast.
@@ -82,15 +87,16 @@ def web_spectrum(
     Returns
     -------
     WebSpectrum
-        An array in the broadcast shape, with its `errors`: the changes from the next
-        smaller truncation.
+        An array in the broadcast shape, with its `errors`: twice the change from the
+        next smaller truncation, of smooth fibres the larger of that and half of the
+        change before.
 
     Raises
     ------
     ValueError
         As `spectral_solve`, or if a wave number is not finite.
     TypeError
-        If the model is not a `LayDownModel`.
+        If the model is no lay-down model.
     ToleranceError
         If no truncation is fine enough, as at low noise.
 
@@ -98,11 +104,9 @@ def web_spectrum(
     ----------
     [KMW09]_, section 4.2.
     """
-    check_model(model)
+    check_quadratic_fibre(model)
     tolerance = checked_tolerance(tolerance)
     first, second = check_finite_numbers("k1", k1), check_finite_numbers("k2", k2)
     first, second = np.broadcast_arrays(first, second)
-    values, errors = fibre_spectrum(
-        Ladder(model), first.ravel(), second.ravel(), tolerance
-    )
+    values, errors = fibre_of(model).spectrum(first.ravel(), second.ravel(), tolerance)
     return WebSpectrum(values.reshape(first.shape), errors.reshape(first.shape))

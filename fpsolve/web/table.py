@@ -9,13 +9,8 @@ from typing import Literal
 import numpy as np
 
 from fpsolve._support.arrays import Array
-from fpsolve.spectral.resolvent.basis import Basis
-from fpsolve.spectral.resolvent.fibre_spectrum import (
-    fibre_gradient,
-    fibre_spectrum,
-)
-from fpsolve.spectral.resolvent.ladder import Ladder
-from fpsolve.spectral.resolvent.limit import limit_derivatives, short_wave_limit
+from fpsolve.model.persistence import Persistence
+from fpsolve.spectral.resolvent.fibre import Fibre, differentiable
 from fpsolve.web.even import EvenNodes
 
 __all__ = ["AXES", "Axis", "SpectrumTable"]
@@ -24,10 +19,8 @@ Axis = Literal["along", "across", "shortness", "direction"]
 AXES: tuple[Axis, ...] = ("along", "across", "shortness", "direction")
 # |k1| σ1 and |k2| σ2 up to which the table is a product of wave numbers.
 END = 2.5
-# Nodes to begin with; across they cost little.
+# Nodes to begin with; across they cost little where one factorisation serves all.
 N_NODES: dict[Axis, int] = {"along": 9, "across": 17, "shortness": 9, "direction": 5}
-# For the law of the angle.
-LAW = Basis(16, 12)
 # Graded no further than this share of an interval.
 FINEST = 0.02
 # Of the largest κ Ŝ a part that no zone notices.
@@ -40,7 +33,7 @@ class Source:
 
     Attributes
     ----------
-    ladder : Ladder
+    ladder : Fibre
     tolerance : float
         Of Ŝ.
     gradients : bool
@@ -49,7 +42,7 @@ class Source:
         0 for Ŝ, then the derivatives in the order of `Generator.parameters`.
     """
 
-    ladder: Ladder
+    ladder: Fibre
     tolerance: float
     gradients: bool = False
     column: int = 0
@@ -61,8 +54,10 @@ class Source:
         new = sorted(set(pairs) - self._known.keys())
         if new:
             first, second = np.array(new).T
-            compute = fibre_gradient if self.gradients else fibre_spectrum
-            found = compute(self.ladder, first, second, self.tolerance)
+            compute = self.ladder.spectrum
+            if self.gradients:
+                compute = differentiable(self.ladder).gradient
+            found = compute(first, second, self.tolerance)
             numbers = np.stack(found, axis=1).reshape(len(new), 2, -1)
             self._known.update(zip(new, numbers, strict=True))
         values = np.array([self._known[pair][:, self.column] for pair in pairs])
@@ -88,11 +83,12 @@ class SpectrumTable:
 
     @classmethod
     def of(
-        cls, ladder: Ladder, tolerance: float, gradients: bool = False
+        cls, ladder: Fibre, tolerance: float, gradients: bool = False
     ) -> SpectrumTable:
         """With few nodes, where the model has its scales."""
         model, (sigma1, sigma2) = ladder.model, ladder.scales
-        wide, diffusivity = max(sigma1, sigma2), model.diffusivity
+        # Of the angle: A²/2, or less where the fibre is smooth.
+        wide, diffusivity = max(sigma1, sigma2), 1.0 / Persistence.of(model).length
         # Of about the size of the gap: A²/2 at low noise, 1/(σ² A²) at high noise.
         rate = diffusivity / (1.0 + 2.0 * (diffusivity * wide) ** 2)
         ridge = rate * wide / max(abs(model.curve.speed), 1e-300)
@@ -102,9 +98,12 @@ class SpectrumTable:
             "shortness": (1.0 / END, 1.0 / (diffusivity * wide)),
             "direction": (1.0, END * ridge),
         }
+        dear = {} if ladder.shared >= END else {"across": N_NODES["along"]}
         nodes = {
             axis: EvenNodes(
-                end, float(np.clip(scale, FINEST * end, end)), N_NODES[axis]
+                end,
+                float(np.clip(scale, FINEST * end, end)),
+                dear.get(axis, N_NODES[axis]),
             )
             for axis, (end, scale) in scales.items()
         }
@@ -161,11 +160,12 @@ class SpectrumTable:
         return float(np.max(errors / np.maximum(values, SMALL * values.max())))
 
     def _law(self, k1: Array, k2: Array) -> Array:
-        generator = self.source.ladder.generator(LAW)
+        ladder = self.source.ladder
         pairs = list(zip(k1.tolist(), k2.tolist(), strict=True))
         if not self.source.column:
-            return np.array([short_wave_limit(generator, pair) for pair in pairs])
-        changes = np.array([limit_derivatives(generator, pair) for pair in pairs])
+            return np.array([ladder.limit(pair) for pair in pairs])
+        of_limit = differentiable(ladder).limit_changes
+        changes = np.array([of_limit(pair) for pair in pairs])
         return np.asarray(changes[:, self.source.column - 1])
 
     def __call__(self, k1: Array, k2: Array, fewer: Axis | None = None) -> Array:

@@ -83,9 +83,14 @@ def test_a_mistake_is_told_and_leaves_no_file(
     assert not (tmp_path / "out").exists() or files(tmp_path / "out") == []
 
 
-def test_a_smooth_fibre_of_a_file_is_refused(fpsolve, config, tmp_path):
-    config.write_text(PROCESS.replace("[web]", "relaxation_length = 0.01\n\n[web]"))
-    result = fpsolve("predict", config, "--out", "out")
-    assert result.exit_code != 0
-    assert not (tmp_path / "out").exists() or files(tmp_path / "out") == []
-    assert "LayDownModel" in result.stderr
+@pytest.mark.nightly
+def test_a_smooth_fibre_of_a_file_is_predicted_in_metres(fpsolve, config, tmp_path):
+    config.write_text(PROCESS.replace("[web]", "relaxation_length = 5e-4\n\n[web]"))
+    result = fpsolve("predict", config, "--tolerance", 0.1, "--out", "out")
+    assert result.exit_code == 0, result.output
+    found = fp.load(tmp_path / "out" / "few-prediction.nc")
+    assert found.model.relaxation_length == pytest.approx(0.1)
+    assert found.length == 0.005
+    process = fp.Process(0.005, 0.005, 30.0, 0.2, 50.0, relaxation_length=5e-4)
+    expected = fp.predict_web(process, spacing=2e-3, zones=[0.01], tolerance=0.1)
+    np.testing.assert_array_equal(found.cv, expected.cv)

@@ -10,7 +10,7 @@ from scipy.special import erf
 import fpsolve as fp
 from fpsolve.errors import ToleranceError
 from fpsolve.paths import EquilibriumLaw
-from fpsolve.spectral.resolvent.ladder import Ladder
+from fpsolve.spectral.resolvent.fibre import fibre_of
 from fpsolve.web import coherent, predict
 from fpsolve.web.band_power import band_power
 from fpsolve.web.even import EvenNodes
@@ -39,7 +39,7 @@ class GaussianTable(SpectrumTable):
 
 @pytest.fixture(scope="module")
 def gaussian():
-    ladder = Ladder(BELT)
+    ladder = fibre_of(BELT)
     table = SpectrumTable.of(ladder, 1e-3)
     made = GaussianTable(GaussianSource(ladder, 1e-12), table.nodes)
     return made.finer("along").finer("shortness").finer("shortness")
@@ -102,7 +102,7 @@ def test_bands_of_a_gaussian_spectrum_have_their_exact_power(gaussian):
 
 def test_a_slow_belt_leaves_the_strips_of_a_gaussian_law():
     """φ(0, k2) = e^{−k2²/2} at rest: strips 2 e^{−2π²/d²}, and Jacobi's identity."""
-    ladder, spacing = Ladder(SLOW), 3.0
+    ladder, spacing = fibre_of(SLOW), 3.0
     amplitudes, errors = coherent.strips(ladder, spacing, 3)
     exact = 2 * np.exp(-2 * math.pi**2 * np.arange(1, 4) ** 2 / spacing**2)
     # The belt changes the law by O(v²).

@@ -14,6 +14,8 @@ from fpsolve._support.arrays import Array
 __all__ = ["Basis", "Integers"]
 
 Integers = NDArray[np.int64]
+# From one truncation to the next; degrees are what lacks.
+DEGREES, HARMONICS = 1.4, 1.25
 
 
 @dataclass(frozen=True)
@@ -68,6 +70,13 @@ class Basis:
     def size(self) -> int:
         """Number of states."""
         return self.kept.size
+
+    def grown(self, level: int) -> Basis:
+        """The basis that is `level` steps larger."""
+        return Basis(
+            round(self.degree * DEGREES**level),
+            round(self.harmonics * HARMONICS**level),
+        )
 
     def parity(self, sign: int) -> Integers:
         """Places that (ξ2, α) → −(ξ2, α) multiplies by `sign`, without the constant."""

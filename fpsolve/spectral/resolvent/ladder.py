@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -17,8 +18,6 @@ from fpsolve.spectral.resolvent.generator import Generator
 
 __all__ = ["Ladder"]
 
-# From one truncation to the next; degrees are what lacks.
-DEGREES, HARMONICS = 1.4, 1.25
 # A √σ below which a fibre goes round several times before it forgets.
 LOW_NOISE = 1.0
 Allowed = Callable[[Array], Array]
@@ -42,6 +41,9 @@ class Ladder:
         Of all bases.
     """
 
+    # The change before the first one, in units of what is allowed.
+    unseen: ClassVar[float] = 0.0
+
     model: LayDownModel
     centre: float = field(init=False)
     _kept: dict[Basis, Generator] = field(default_factory=dict, init=False)
@@ -63,8 +65,8 @@ class Ladder:
 
     def climb(
         self,
-        first: Basis,
-        compute: Callable[[Generator], Array],
+        first: Any,
+        compute: Callable[[Any], Array],
         allowed: Allowed,
         level: int = 0,
         most: int = MOST_STATES,
@@ -82,9 +84,9 @@ class Ladder:
         Parameters
         ----------
         first : Basis
-            Of level 0.
+            Of level 0; whatever has a `size` and `grown(level)`.
         compute : callable
-            Of a generator an array (number, column).
+            Of a generator an array (number, column), or (number,).
         allowed : callable
             Of what was computed, the largest errors, and the units of other columns.
         level : int
@@ -98,18 +100,19 @@ class Ladder:
             If even the largest truncation is not fine enough. A larger noise is named
             only where it is a remedy.
         """
-        coarse = compute(self.generator(grown(first, level)))
-        reached, tolerance, before = np.inf, np.nan, np.zeros(coarse.shape[1])
+        coarse = columns(compute(self.generator(grown(first, level))))
+        reached, tolerance = np.inf, np.nan
+        before = np.full(coarse.shape[1], self.unseen)
         while grown(first, level + 1).size <= most:
             level += 1
-            fine = compute(self.generator(grown(first, level)))
-            limit = allowed(fine)
+            found = compute(self.generator(grown(first, level)))
+            fine, limit = columns(found), columns(allowed(found))
             change = np.max(np.abs(fine - coarse) / limit, axis=0)
             change = np.maximum(change, change[0])
             error = limit * np.maximum(SAFETY * change, MEMORY * before)
             error = error + ROUNDING * np.abs(fine)
             if (error <= limit)[:, 0].all():
-                return fine, error, level
+                return found, error.reshape(found.shape), level
             worst = error[:, 0].argmax()
             reached, tolerance = float(error[worst, 0]), float(limit[worst, 0])
             coarse, before = fine, change
@@ -119,8 +122,11 @@ class Ladder:
         raise ToleranceError(reached, tolerance, remedy)
 
 
-def grown(first: Basis, level: int) -> Basis:
+def columns(found: Array) -> Array:
+    """Numbers as a column."""
+    return found.reshape(len(found), -1)
+
+
+def grown(first: Any, level: int) -> Any:
     """The basis that is `level` steps larger."""
-    return Basis(
-        round(first.degree * DEGREES**level), round(first.harmonics * HARMONICS**level)
-    )
+    return first.grown(level)

@@ -17,14 +17,13 @@ from fpsolve._support.checks import (
     check_real,
 )
 from fpsolve.evolution.call import recorded
-from fpsolve.model.curves.belts import MovingBelt
-from fpsolve.model.laydown import LayDownModel
 from fpsolve.model.potentials.quadratic import QuadraticPotential
-from fpsolve.spectral.evolution.quadratic import check_model, checked_tolerance
+from fpsolve.spectral.evolution.quadratic import checked_tolerance
+from fpsolve.spectral.resolvent.fibre import check_quadratic_fibre
 from fpsolve.studies.arguments import noises_of, series_of
 from fpsolve.studies.sweeps.study import swept
 from fpsolve.studies.sweeps.sweep import Case, SweepProgress
-from fpsolve.studies.webs.homogeneity_case import Laid, homogeneity_case
+from fpsolve.studies.webs.homogeneity_case import Laid, homogeneity_case, model_of
 from fpsolve.studies.webs.homogeneity_dataset import homogeneity_dataset
 from fpsolve.web.predict import checked_zones
 from fpsolve.web.prediction import POSITIONS
@@ -46,6 +45,7 @@ def web_homogeneity(
     belt_speeds: Iterable[float],
     spacings: Iterable[float],
     *,
+    relaxation_length: float | None = None,
     zones: Iterable[float] = ZONES,
     positions: str = "regular",
     n_webs: int = 12,
@@ -74,6 +74,8 @@ def web_homogeneity(
     noises, belt_speeds, spacings : iterable of float
         A, v and d; every combination is one case. v must not vanish, d is a multiple
         of the pixel.
+    relaxation_length : float, optional
+        R of the smooth model; the basic model without it.
     zones : iterable of float
         Sides x of square zones, multiples of the pixel.
     positions : {"regular", "random"}
@@ -117,8 +119,8 @@ def web_homogeneity(
         "spacing": checked_lengths("spacings", spacings),
     }
     for noise, speed in itertools.product(axes["noise"], axes["belt_speed"]):
-        model = LayDownModel(potential, float(noise), MovingBelt(float(speed)))
-        check_model(model)
+        model = model_of(potential, float(noise), float(speed), relaxation_length)
+        check_quadratic_fibre(model)
     sides = np.unique(checked_zones(list(series_of(zones, "zones")), 1.0, model))
     check_one_of("positions", positions, POSITIONS)
     side = check_positive("pixel", float(sides[0]) if pixel is None else pixel)
@@ -130,15 +132,19 @@ def web_homogeneity(
         None if ds is None else check_positive("ds", ds),
         check_integer("seed", seed, at_least=0), checked_tolerance(tolerance),
     )  # fmt: skip
+    smooth = {}
+    if relaxation_length is not None:
+        length = check_positive("relaxation_length", relaxation_length)
+        smooth = {"relaxation_length": length}
     cases = [
-        {"potential": potential, "laid": laid,
+        {"potential": potential, "laid": laid, **smooth,
          **dict(zip(axes, map(float, place), strict=True))}
         for place in itertools.product(*axes.values())
     ]  # fmt: skip
     about = {
         "positions": positions, "n_webs": laid.n_webs, "pixel": side,
         "seed": str(laid.seed),
-        "tolerance": laid.tolerance,
+        "tolerance": laid.tolerance, **smooth,
         **({} if laid.ds is None else {"ds": laid.ds}),
     }  # fmt: skip
 

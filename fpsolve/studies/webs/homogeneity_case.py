@@ -9,13 +9,16 @@ import numpy as np
 
 from fpsolve._support.arrays import Array
 from fpsolve.model.curves.belts import MovingBelt
+from fpsolve.model.fibre import FibreModel
 from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.persistence import Persistence
 from fpsolve.model.potentials.quadratic import QuadraticPotential
+from fpsolve.model.smooth import SmoothLayDownModel
 from fpsolve.spectral.evolution.quadratic import quadratic
 from fpsolve.web.lay_web import lay_web
 from fpsolve.web.predict import predict_web
 
-__all__ = ["Laid", "homogeneity_case", "zone_squares"]
+__all__ = ["Laid", "homogeneity_case", "model_of", "zone_squares"]
 
 # Throwing ranges beside the largest zone, beyond which a fibre is as good as never
 # (the law of a difference of two ξ2 has the deviation √2 σ2: 2e-12 lies beyond),
@@ -54,9 +57,10 @@ def homogeneity_case(
     belt_speed: float,
     spacing: float,
     laid: Laid,
+    relaxation_length: float | None = None,
 ) -> dict[str, Array]:
     """CV predicted and of laid webs, by zone, with their errors and the score."""
-    model = LayDownModel(potential, noise, MovingBelt(belt_speed))
+    model = model_of(potential, noise, belt_speed, relaxation_length)
     prediction = predict_web(
         model, spacing=spacing, zones=laid.zones, positions=laid.positions,
         tolerance=laid.tolerance,
@@ -78,6 +82,19 @@ def homogeneity_case(
     }
 
 
+def model_of(
+    potential: QuadraticPotential,
+    noise: float,
+    belt_speed: float,
+    relaxation_length: float | None,
+) -> FibreModel:
+    """The basic model, or the smooth one with a relaxation length."""
+    belt = MovingBelt(belt_speed)
+    if relaxation_length is None:
+        return LayDownModel(potential, noise, belt)
+    return SmoothLayDownModel(potential, relaxation_length, noise, belt)
+
+
 def seeds_of(laid: Laid, *case: float) -> list[np.random.SeedSequence]:
     """Seeds of the webs of a case, others for every case and whatever the order."""
     words = np.array(case).view(np.uint32).tolist()
@@ -85,11 +102,12 @@ def seeds_of(laid: Laid, *case: float) -> list[np.random.SeedSequence]:
 
 
 def web_squares(
-    model: LayDownModel, spacing: float, laid: Laid, seed: np.random.SeedSequence
+    model: FibreModel, spacing: float, laid: Laid, seed: np.random.SeedSequence
 ) -> Array:
     """⟨(v d m − 1)²⟩ of one web, by zone."""
     widest = laid.zones[-1]
-    sigma = quadratic(model).sigma2
+    # A smooth fibre lies as wide as one with the range √F σ at large noise.
+    sigma = quadratic(model).sigma2 * math.sqrt(Persistence.of(model).factor)
     cells = max(_FEWEST, math.ceil((widest + _AROUND * sigma) / spacing))
     columns = _LONG * round(widest / laid.pixel)
     web = lay_web(

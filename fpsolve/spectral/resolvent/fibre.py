@@ -1,0 +1,161 @@
+"""What a web asks of one fibre, whichever model it has."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+
+from fpsolve._support.arrays import Array
+from fpsolve.model.fibre import FibreModel, check_fibre_model
+from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.smooth import SmoothLayDownModel
+from fpsolve.spectral.evolution.quadratic import check_parts
+from fpsolve.spectral.resolvent.basis import Basis
+from fpsolve.spectral.resolvent.fibre_spectrum import (
+    LONG,
+    fibre_gradient,
+    fibre_spectrum,
+)
+from fpsolve.spectral.resolvent.ladder import Ladder
+from fpsolve.spectral.resolvent.limit import (
+    angle_harmonics,
+    limit_derivatives,
+    short_wave_limit,
+)
+from fpsolve.spectral.resolvent.plane_waves import characteristic
+from fpsolve.spectral.resolvent.smooth_ladder import LAW, SmoothLadder
+from fpsolve.spectral.resolvent.smooth_limit import smooth_angle_limit
+from fpsolve.spectral.resolvent.smooth_spectrum import LONG as SMOOTH_LONG
+from fpsolve.spectral.resolvent.smooth_spectrum import smooth_spectrum
+
+__all__ = ["Fibre", "check_quadratic_fibre", "differentiable", "fibre_of"]
+
+# Two truncations of the stationary law of the basic model; twice their difference is
+# the error.
+COARSE, FINE = Basis(18, 12), Basis(25, 16)
+# For the law of the angle.
+ANGLE = Basis(16, 12)
+Pair = tuple[Array, Array]
+
+
+class Fibre(Protocol):
+    """One fibre in its stationary law, to a tolerance or in two truncations.
+
+    Attributes
+    ----------
+    model : FibreModel
+    scales : (float, float)
+        The throwing ranges.
+    """
+
+    @property
+    def model(self) -> Any:
+        """The model."""
+
+    @property
+    def scales(self) -> tuple[float, float]:
+        """The throwing ranges."""
+
+    @property
+    def shared(self) -> float:
+        """|k| σ up to which one factorisation serves every k2 of a k1."""
+
+    def spectrum(self, k1: Array, k2: Array, tolerance: float) -> Pair:
+        """Ŝ at (k1[i], k2[i]) and bounds of the errors."""
+
+    def limit(self, k: tuple[float, float]) -> float:
+        """(2π/|k|) Σ± f(β ± π/2), the end of short waves in the direction of k."""
+
+    def characteristics(self, k2: Array) -> Pair:
+        """E e^{i k2 ξ2} in two truncations, the finer one first."""
+
+    def double_cosines(self) -> tuple[float, float]:
+        """E cos 2α in two truncations, the finer one first."""
+
+
+@dataclass(eq=False)
+class BasicFibre(Ladder):
+    """A fibre of the basic model."""
+
+    @property
+    def shared(self) -> float:
+        """|k| σ up to which one factorisation serves every k2 of a k1."""
+        return LONG
+
+    def spectrum(self, k1: Array, k2: Array, tolerance: float) -> Pair:
+        """Ŝ at (k1[i], k2[i]) and bounds of the errors."""
+        return fibre_spectrum(self, k1, k2, tolerance)
+
+    def limit(self, k: tuple[float, float]) -> float:
+        """(2π/|k|) Σ± f(β ± π/2), the end of short waves in the direction of k."""
+        return short_wave_limit(self.generator(ANGLE), k)
+
+    def gradient(self, k1: Array, k2: Array, tolerance: float) -> Pair:
+        """Ŝ and its derivatives in the parameters, (i, column), and their errors."""
+        return fibre_gradient(self, k1, k2, tolerance)
+
+    def limit_changes(self, k: tuple[float, float]) -> Array:
+        """Derivatives of the end of short waves."""
+        return limit_derivatives(self.generator(ANGLE), k)
+
+    def characteristics(self, k2: Array) -> Pair:
+        """E e^{i k2 ξ2} in two truncations, the finer one first."""
+        fine, coarse = (
+            np.array([characteristic(self.generator(one), (0.0, k)).real for k in k2])
+            for one in (FINE, COARSE)
+        )
+        return fine, coarse
+
+    def double_cosines(self) -> tuple[float, float]:
+        """E cos 2α in two truncations, the finer one first."""
+        fine, coarse = (
+            float(angle_harmonics(self.generator(one))[2]) for one in (FINE, COARSE)
+        )
+        return fine, coarse
+
+
+@dataclass(eq=False)
+class SmoothFibre(SmoothLadder):
+    """A fibre of the smooth model."""
+
+    @property
+    def shared(self) -> float:
+        """|k| σ up to which one factorisation serves every k2 of a k1."""
+        pairs = zip(self.spreads, self.scales, strict=True)
+        return SMOOTH_LONG / max(spread / sigma for spread, sigma in pairs)
+
+    def spectrum(self, k1: Array, k2: Array, tolerance: float) -> Pair:
+        """Ŝ at (k1[i], k2[i]) and bounds of the errors."""
+        return smooth_spectrum(self, k1, k2, tolerance)
+
+    def limit(self, k: tuple[float, float]) -> float:
+        """(2π/|k|) Σ± f(β ± π/2), the end of short waves in the direction of k."""
+        return smooth_angle_limit(self.laws(LAW)[0], k)
+
+
+def differentiable(fibre: Fibre) -> BasicFibre:
+    """The same fibre, known to be one whose derivatives there are."""
+    assert isinstance(fibre, BasicFibre)
+    return fibre
+
+
+def check_quadratic_fibre(model: Any) -> None:
+    """Raise unless `model` is one whose `Fibre` there is."""
+    check_fibre_model(model)
+    check_parts(model)
+
+
+def fibre_of(model: FibreModel) -> Fibre:
+    """The fibre of a model, basic or smooth.
+
+    Raises
+    ------
+    ToleranceError
+        If its stationary law cannot be expanded.
+    """
+    if isinstance(model, SmoothLayDownModel):
+        return SmoothFibre(model)
+    assert isinstance(model, LayDownModel)
+    return BasicFibre(model)
