@@ -14,10 +14,14 @@ from fpsolve._support.checks import check_flag, check_one_of, check_positive, sh
 from fpsolve.errors import ToleranceError
 from fpsolve.evolution.call import recorded
 from fpsolve.model.fibre import FibreModel
-from fpsolve.model.laydown import LayDownModel
 from fpsolve.model.process import Process
-from fpsolve.spectral.evolution.quadratic import checked_tolerance, quadratic
-from fpsolve.spectral.resolvent.fibre import Fibre, check_quadratic_fibre, fibre_of
+from fpsolve.spectral.evolution.quadratic import checked_tolerance
+from fpsolve.spectral.resolvent.fibre import (
+    Fibre,
+    check_fibre,
+    fibre_of,
+    has_gradients,
+)
 from fpsolve.web import coherent
 from fpsolve.web.band_power import band_power
 from fpsolve.web.gradient import of_process, with_gradient
@@ -103,12 +107,12 @@ def predict_web(
     """
     unit = model.length if isinstance(model, Process) else 1.0
     fibre: Any = model.model if isinstance(model, Process) else model
-    check_quadratic_fibre(fibre)
+    check_fibre(fibre)
     gradients = check_flag("gradients", gradients)
-    if gradients and not isinstance(fibre, LayDownModel):
+    if gradients and not has_gradients(fibre):
         raise ValueError(
-            "`gradients` are those of the basic model, got a smooth one; compare "
-            "predictions for two values of a parameter."
+            "`gradients` are those of the basic model with a quadratic potential, got "
+            "another one; compare predictions for two values of a parameter."
         )
     found = of_model(
         fibre, unit, check_positive("spacing", spacing), zones, positions,
@@ -135,8 +139,8 @@ def of_model(
         )
     distance = spacing / unit
     check_one_of("positions", positions, POSITIONS)
-    sides = checked_zones(zones, unit, model)
     ladder = fibre_of(model)
+    sides = checked_zones(zones, unit * max(ladder.scales))
     table, variances, errors = refined(ladder, sides / unit, tolerance, gradients)
     per_line = abs(model.curve.speed) * distance
     of_positions = getattr(coherent, f"{positions}_positions")
@@ -182,13 +186,11 @@ def refined(
         table = table.finer(axis)
 
 
-def checked_zones(zones: ArrayLike, unit: float, model: FibreModel) -> Array:
-    """Sides as an array; ValueError unless each is positive and of a possible size."""
+def checked_zones(zones: ArrayLike, wide: float) -> Array:
+    """Sides as an array; ValueError unless they fit to the throwing range `wide`."""
     sides = np.atleast_1d(check_finite_numbers("zones", zones)).ravel()
     if not sides.size:
         raise ValueError("`zones` must name a side at least, got none.")
-    potential = quadratic(model)
-    wide = unit * max(potential.sigma1, potential.sigma2)
     wrong = ~((sides >= SMALLEST * wide) & (sides <= LARGEST * wide))
     if wrong.any():
         raise ValueError(

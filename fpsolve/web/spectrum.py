@@ -11,7 +11,7 @@ from fpsolve._support.arrays import Array, check_finite_numbers
 from fpsolve._support.blas import one_blas_thread
 from fpsolve.model.fibre import FibreModel
 from fpsolve.spectral.evolution.quadratic import checked_tolerance
-from fpsolve.spectral.resolvent.fibre import check_quadratic_fibre, fibre_of
+from fpsolve.spectral.resolvent.fibre import check_fibre, fibre_of
 
 __all__ = ["WebSpectrum", "web_spectrum"]
 
@@ -104,7 +104,7 @@ def web_spectrum(
     ----------
     [KMW09]_, section 4.2.
     """
-    check_quadratic_fibre(model)
+    check_fibre(model)
     tolerance = checked_tolerance(tolerance)
     first, second = check_finite_numbers("k1", k1), check_finite_numbers("k2", k2)
     first, second = np.broadcast_arrays(first, second)

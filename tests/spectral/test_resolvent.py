@@ -187,7 +187,7 @@ def test_it_is_an_array_with_errors_beside_it():
         (
             {"model": fp.LayDownModel(fp.LinearPotential(), 1.0)},
             ValueError,
-            "`potential` must be a QuadraticPotential",
+            "`potential` must be a smooth function",
         ),
         (
             {"model": fp.LayDownModel(ISOTROPIC, 0.0)},

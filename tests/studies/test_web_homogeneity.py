@@ -119,7 +119,7 @@ def test_the_figure_has_a_panel_for_noise_and_speed(dataset):
         ({"ds": np.nan}, "`ds` must be positive"),
         ({"seed": -1}, "`seed` must be at least 0"),
         ({"tolerance": 0.0}, "`tolerance` must be positive"),
-        ({"potential": fp.LinearPotential()}, "`potential` must be a Quadratic"),
+        ({"potential": fp.LinearPotential()}, "`potential` must be a smooth function"),
     ],
 )  # fmt: skip
 def test_what_no_study_can_be_of_is_refused_before_a_web_is_laid(options, message):

@@ -9,7 +9,13 @@ from fpsolve.model import laydown
 from fpsolve.model.fibre import FibreModel
 from fpsolve.model.potentials.quadratic import QuadraticPotential
 
-__all__ = ["check_model", "check_parts", "checked_tolerance", "quadratic"]
+__all__ = [
+    "check_model",
+    "check_noise_and_belt",
+    "check_parts",
+    "checked_tolerance",
+    "quadratic",
+]
 
 
 def check_model(model: Any) -> None:
@@ -21,6 +27,11 @@ def check_model(model: Any) -> None:
 def check_parts(model: FibreModel) -> None:
     """ValueError unless the expansion solves for this potential, noise and curve."""
     quadratic(model)
+    check_noise_and_belt(model)
+
+
+def check_noise_and_belt(model: FibreModel) -> None:
+    """ValueError without noise, or under a nozzle that moves."""
     if not model.noise > 0:
         raise ValueError(
             "`noise` must be positive, got 0; without noise the density keeps "

@@ -10,6 +10,7 @@ import numpy as np
 from fpsolve._support.arrays import Array
 from fpsolve.model.fibre import FibreModel, check_fibre_model
 from fpsolve.model.laydown import LayDownModel
+from fpsolve.model.potentials.quadratic import QuadraticPotential
 from fpsolve.model.smooth import SmoothLayDownModel
 from fpsolve.spectral.evolution.quadratic import check_parts
 from fpsolve.spectral.resolvent.basis import Basis
@@ -25,12 +26,20 @@ from fpsolve.spectral.resolvent.limit import (
     short_wave_limit,
 )
 from fpsolve.spectral.resolvent.plane_waves import characteristic
+from fpsolve.spectral.resolvent.round_ladder import RoundLadder, check_spectrum_model
 from fpsolve.spectral.resolvent.smooth_ladder import LAW, SmoothLadder
 from fpsolve.spectral.resolvent.smooth_limit import smooth_angle_limit
 from fpsolve.spectral.resolvent.smooth_spectrum import LONG as SMOOTH_LONG
 from fpsolve.spectral.resolvent.smooth_spectrum import smooth_spectrum
 
-__all__ = ["Fibre", "check_quadratic_fibre", "differentiable", "fibre_of"]
+__all__ = [
+    "Fibre",
+    "check_fibre",
+    "differentiable",
+    "fibre_of",
+    "has_gradients",
+    "scales_of",
+]
 
 # Two truncations of the stationary law of the basic model; twice their difference is
 # the error.
@@ -75,9 +84,8 @@ class Fibre(Protocol):
         """E cos 2α in two truncations, the finer one first."""
 
 
-@dataclass(eq=False)
-class BasicFibre(Ladder):
-    """A fibre of the basic model."""
+class _Resolved(Ladder):
+    """A fibre of the basic model, in any basis."""
 
     @property
     def shared(self) -> float:
@@ -91,14 +99,6 @@ class BasicFibre(Ladder):
     def limit(self, k: tuple[float, float]) -> float:
         """(2π/|k|) Σ± f(β ± π/2), the end of short waves in the direction of k."""
         return short_wave_limit(self.generator(ANGLE), k)
-
-    def gradient(self, k1: Array, k2: Array, tolerance: float) -> Pair:
-        """Ŝ and its derivatives in the parameters, (i, column), and their errors."""
-        return fibre_gradient(self, k1, k2, tolerance)
-
-    def limit_changes(self, k: tuple[float, float]) -> Array:
-        """Derivatives of the end of short waves."""
-        return limit_derivatives(self.generator(ANGLE), k)
 
     def characteristics(self, k2: Array) -> Pair:
         """E e^{i k2 ξ2} in two truncations, the finer one first."""
@@ -114,6 +114,22 @@ class BasicFibre(Ladder):
             float(angle_harmonics(self.generator(one))[2]) for one in (FINE, COARSE)
         )
         return fine, coarse
+
+
+class BasicFibre(_Resolved):
+    """A fibre of the basic model under a quadratic potential."""
+
+    def gradient(self, k1: Array, k2: Array, tolerance: float) -> Pair:
+        """Ŝ and its derivatives in the parameters, (i, column), and their errors."""
+        return fibre_gradient(self, k1, k2, tolerance)
+
+    def limit_changes(self, k: tuple[float, float]) -> Array:
+        """Derivatives of the end of short waves."""
+        return limit_derivatives(self.generator(ANGLE), k)
+
+
+class RoundFibre(RoundLadder, _Resolved):
+    """A fibre of the basic model under another isotropic potential."""
 
 
 @dataclass(eq=False)
@@ -141,10 +157,28 @@ def differentiable(fibre: Fibre) -> BasicFibre:
     return fibre
 
 
-def check_quadratic_fibre(model: Any) -> None:
+def has_gradients(model: Any) -> bool:
+    """Whether the fibre of a model is `differentiable`."""
+    return isinstance(model, LayDownModel) and isinstance(
+        model.potential, QuadraticPotential
+    )
+
+
+def check_fibre(model: Any) -> None:
     """Raise unless `model` is one whose `Fibre` there is."""
     check_fibre_model(model)
-    check_parts(model)
+    if isinstance(model, SmoothLayDownModel):
+        check_parts(model)
+    else:
+        check_spectrum_model(model)
+
+
+def scales_of(model: FibreModel) -> tuple[float, float]:
+    """The throwing ranges, or what takes their place, without a fibre."""
+    if isinstance(model.potential, QuadraticPotential):
+        return model.potential.sigma1, model.potential.sigma2
+    assert isinstance(model, LayDownModel)
+    return RoundLadder(model).scales
 
 
 def fibre_of(model: FibreModel) -> Fibre:
@@ -158,4 +192,4 @@ def fibre_of(model: FibreModel) -> Fibre:
     if isinstance(model, SmoothLayDownModel):
         return SmoothFibre(model)
     assert isinstance(model, LayDownModel)
-    return BasicFibre(model)
+    return BasicFibre(model) if has_gradients(model) else RoundFibre(model)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import singledispatch
 from typing import Any
 
 import numpy as np
@@ -41,6 +42,7 @@ def coefficients(q: float, degree: int) -> Complex:
     return np.asarray(powers * math.exp(-0.5 * q * q))
 
 
+@singledispatch
 def plane_wave(generator: Generator, k: WaveVector) -> Complex:
     """Coefficients of e^{ik·(ξ − c)} in the basis."""
     basis = generator.basis
@@ -65,6 +67,7 @@ def characteristic(generator: Generator, k: WaveVector) -> complex:
     return complex(generator.stationary @ plane_wave(generator, k))
 
 
+@singledispatch
 def multiplied(generator: Generator, k: WaveVector) -> Complex:
     """E e^{−ik·(ξ − c)} f in the stationary law, for every state f of the basis."""
     return against_wave(generator, k, generator.stationary)

@@ -13,6 +13,7 @@ from fpsolve._support.checks import (
 )
 from fpsolve.model.process import Process
 from fpsolve.spectral.evolution.quadratic import check_model, checked_tolerance
+from fpsolve.spectral.resolvent.fibre import scales_of
 from fpsolve.studies.design.front import SPEED
 from fpsolve.studies.design.settings import Settings
 from fpsolve.studies.design.space import Space, space_of
@@ -68,7 +69,7 @@ def task_of(
     start, aim = checked_start(process, spacing, titer), target_of(target)
     space = space_of(start, free, bounds)
     check_cost(cost, aim, space.names)
-    checked_zones(aim.zones, process.length, process.model)
+    checked_zones(aim.zones, process.length * max(scales_of(process.model)))
     check_one_of("positions", positions, POSITIONS)
     made = Task(
         space, aim, positions, cost, checked_tolerance(tolerance),

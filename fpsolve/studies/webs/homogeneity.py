@@ -19,7 +19,7 @@ from fpsolve._support.checks import (
 from fpsolve.evolution.call import recorded
 from fpsolve.model.potentials.quadratic import QuadraticPotential
 from fpsolve.spectral.evolution.quadratic import checked_tolerance
-from fpsolve.spectral.resolvent.fibre import check_quadratic_fibre
+from fpsolve.spectral.resolvent.fibre import check_fibre, scales_of
 from fpsolve.studies.arguments import noises_of, series_of
 from fpsolve.studies.sweeps.study import swept
 from fpsolve.studies.sweeps.sweep import Case, SweepProgress
@@ -120,8 +120,9 @@ def web_homogeneity(
     }
     for noise, speed in itertools.product(axes["noise"], axes["belt_speed"]):
         model = model_of(potential, float(noise), float(speed), relaxation_length)
-        check_quadratic_fibre(model)
-    sides = np.unique(checked_zones(list(series_of(zones, "zones")), 1.0, model))
+        check_fibre(model)
+    wide = max(scales_of(model))
+    sides = np.unique(checked_zones(list(series_of(zones, "zones")), wide))
     check_one_of("positions", positions, POSITIONS)
     side = check_positive("pixel", float(sides[0]) if pixel is None else pixel)
     check_multiples("zones", sides, side)
