@@ -84,9 +84,7 @@ def square_gradient(
     speed = float(ladder.model.curve.speed)
     values, errors = np.zeros((2, n + 1))
     for parameter in range(n):
-        change, by_axis, of_nodes = zone_variance(
-            table.derivative(parameter), side, table
-        )
+        change, by_axis, of_nodes = zone_variance(table.derivative(parameter), side)
         values[parameter] = abs(speed) * spacing * change
         errors[parameter] = abs(speed) * spacing * (sum(by_axis.values()) + of_nodes)
     # Of the factor |v| d itself.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Literal
@@ -153,10 +154,8 @@ class SpectrumTable:
 
     @property
     def share(self) -> float:
-        """The largest error outside, relative to κ Ŝ or to what is small of it."""
+        """Of Ŝ the largest error outside, relative to κ Ŝ or to what is small of it."""
         values, errors = self.outside
-        if self.source.column:
-            values, _ = replace(self, source=replace(self.source, column=0)).outside
         return float(np.max(errors / np.maximum(values, SMALL * values.max())))
 
     def _law(self, k1: Array, k2: Array) -> Array:
@@ -170,16 +169,35 @@ class SpectrumTable:
 
     def __call__(self, k1: Array, k2: Array, fewer: Axis | None = None) -> Array:
         """Ŝ at wave vectors k1, k2 >= 0, of one shape and none of them zero."""
+        return self._between(self.inside[0], self.outside[0], k1, k2, fewer)
+
+    def bound(self, k1: Array, k2: Array) -> Array:
+        """What errors of the nodes make of it at most."""
+        return self._between(self.inside[1], self.outside[1], k1, k2, None, np.abs)
+
+    def _between(
+        self,
+        inside: Array,
+        outside: Array,
+        k1: Array,
+        k2: Array,
+        fewer: Axis | None,
+        weights: Callable[[Array], Array] = np.asarray,
+    ) -> Array:
         sigma1, sigma2 = self.source.ladder.scales
         within = (k1 <= self.ends[0]) & (k2 <= self.ends[1])
         result = np.empty(k1.shape)
-        along = self.nodes["along"].at(k1[within], fewer == "along")
-        across = self.nodes["across"].at(k2[within], fewer == "across")
-        result[within] = ((along @ self.inside[0]) * across).sum(axis=1)
+
+        def at(axis: Axis, where: Array) -> Array:
+            return weights(self.nodes[axis].at(where, fewer == axis))
+
+        along, across = at("along", k1[within]), at("across", k2[within])
+        result[within] = ((along @ inside) * across).sum(axis=1)
         first, second = k1[~within] * sigma1, k2[~within] * sigma2
         size = np.hypot(first, second)
-        shortness = self.nodes["shortness"].at(1.0 / size, fewer == "shortness")
-        direction = self.nodes["direction"].at(first / size, fewer == "direction")
-        product = ((shortness @ self.outside[0]) * direction).sum(axis=1)
-        result[~within] = product / size
+        shortness, direction = (
+            at("shortness", 1.0 / size),
+            at("direction", first / size),
+        )
+        result[~within] = ((shortness @ outside) * direction).sum(axis=1) / size
         return result

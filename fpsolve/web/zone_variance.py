@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import lru_cache, partial
 
 import numpy as np
 
@@ -20,6 +21,8 @@ N_OUTSIDE = 16
 # Rectangles go on until k x and k σ are beyond these numbers: of short waves a share
 # of 0.2/(k x)² is left, and for wide zones one of 1/(k σ)².
 FAR_PERIODS, FAR_SCALES = 1000.0, 200.0
+# Of one zone all rows: Ŝ, its derivatives and estimates of errors share them.
+ROWS = 128
 
 
 @dataclass(frozen=True)
@@ -74,7 +77,7 @@ def window_integrals(zone: float, begin: float, end: float) -> tuple[Array, Arra
 
 
 def zone_variance(
-    table: SpectrumTable, zone: float, of: SpectrumTable | None = None
+    table: SpectrumTable, zone: float
 ) -> tuple[float, dict[Axis, float], float]:
     """∫ Ŝ sinc²(k1 x/2) sinc²(k2 x/2) d²k/(2π)², and its errors.
 
@@ -83,8 +86,6 @@ def zone_variance(
     table : SpectrumTable
         Of Ŝ or of a derivative.
     zone : float
-    of : SpectrumTable, optional
-        Of Ŝ where `table` is of a derivative, whose errors outside are relative to it.
 
     Returns
     -------
@@ -93,18 +94,21 @@ def zone_variance(
     by_axis : dict of float
         Its change when the last polynomials of an axis are left out.
     of_nodes : float
-        By the errors of the nodes.
+        By the errors of the nodes; of Ŝ outside as if all were like the worst.
     """
     inside = _inside(table, zone, None)
     outside = _outside(table, zone, None)
-    size = outside if of is None else _outside(of, zone, None)
+    if table.source.column:
+        out_error = _outside(table, zone, None, bound=True)
+    else:
+        out_error = table.share * abs(outside)
     changes: dict[Axis, float] = {}
     for axis in AXES:
         if axis in ("along", "across"):
             changes[axis] = abs(_inside(table, zone, axis)[0] - inside[0])
         else:
             changes[axis] = abs(_outside(table, zone, axis) - outside)
-    return inside[0] + outside, changes, inside[1] + table.share * abs(size)
+    return inside[0] + outside, changes, inside[1] + out_error
 
 
 def _inside(
@@ -122,17 +126,30 @@ def _inside(
     return value / np.pi**2, error / np.pi**2
 
 
-def _outside(table: SpectrumTable, zone: float, fewer: Axis | None) -> float:
-    """Over rectangles that double in size, until nothing is left to count."""
+def _outside(
+    table: SpectrumTable, zone: float, fewer: Axis | None, bound: bool = False
+) -> float:
+    """Over rectangles that double in size, until nothing is left to count.
+
+    Or what errors of the nodes make of it, all of one sign.
+    """
+    at = table.bound if bound else partial(table, fewer=fewer)
     total = 0.0
     for first, second in _rectangles(table, zone):
         k1, k2 = np.meshgrid(first.points, second.points, indexing="ij")
         rows = []
         for interval in (first, second):
-            k, weights = window_integrals(zone, interval.begin, interval.end)
-            rows.append(weights @ interval.at(k))
-        total += float(rows[0] @ table(k1, k2, fewer) @ rows[1])
+            row = _row(zone, interval)
+            rows.append(np.abs(row) if bound else row)
+        total += float(rows[0] @ at(k1, k2) @ rows[1])
     return total / np.pi**2
+
+
+@lru_cache(maxsize=ROWS)
+def _row(zone: float, interval: Interval) -> Array:
+    """From values at the nodes of an interval to the integral over it."""
+    k, weights = window_integrals(zone, interval.begin, interval.end)
+    return np.asarray(weights @ interval.at(k))
 
 
 def _rectangles(
