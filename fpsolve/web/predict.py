@@ -86,8 +86,8 @@ def predict_web(
     tolerance : float
         For every CV, relative.
     gradients : bool
-        Whether derivatives are computed, too. They do not change the rest, and have the
-        errors that they have: `tolerance` is for CV.
+        Whether derivatives are computed, too, of the basic model. They do not change
+        the rest, and have the errors that they have: `tolerance` is for CV.
 
     Returns
     -------

@@ -218,7 +218,10 @@ def test_gradients_fulfil_the_law_of_dimensions(web):
     assert "∂ by noise, belt_speed" in repr(web)
 
 
-@pytest.mark.parametrize(("positions", "spacing"), [("regular", 0.3), ("random", 1.5)])
+@pytest.mark.parametrize(
+    ("positions", "spacing"),
+    [("regular", 0.3), pytest.param("random", 1.5, marks=pytest.mark.nightly)],
+)
 def test_cv_goes_with_the_root_of_the_spacing(positions, spacing, few_nodes):
     """Of regular positions without strips, of random ones always: ∂CV = CV/(2 d)."""
     numbers = [*NUMBERS[:4], spacing]
