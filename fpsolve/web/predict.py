@@ -73,8 +73,9 @@ def predict_web(
     Parameters
     ----------
     model : LayDownModel, SmoothLayDownModel or Process
-        With a `QuadraticPotential` and a belt at constant speed v ≠ 0. Of a process
-        all lengths are metres.
+        With a `QuadraticPotential`, of the basic model also with another isotropic
+        smooth potential, and a belt at constant speed v ≠ 0. Of a process all lengths
+        are metres.
     spacing : float
         Distance d of the spinning positions across the belt.
     zones : array_like
