@@ -4,7 +4,7 @@ Claims: central differences of `predict_web` at a tighter tolerance lie within e
 of the gradient, in every parameter; so do gradients at a tighter tolerance; and a
 prediction with gradients takes less than two and a half times as long as one without,
 and gives the same CV. That differences converge with the order two at every halving
-needs the same nodes and truncations: tests/web/test_web_gradient.py.
+needs the same nodes and truncations: tests/web/test_web_gradient_orders.py.
 """
 
 from __future__ import annotations
