@@ -7,8 +7,8 @@ Chord j runs from node j to node j + 1, at the angle y_j. The state at a node is
     y = α + b κ + w₅ f + w₆ g + noise + (m' - m)/ℓ + noise of the chord,
 
 f the mean of -∇B·τ⊥ over the chord and g its change along it. The force is read off
-the chord itself: f depends on y, with the derivative f'. The density of y given the
-chords before has therefore the factor |1 - w₅ f'| of the change of variables.
+the chord itself: f and g depend on y, by f' and g'. The density of y given the
+chords before has therefore the factor |1 - w₅ f' - w₆ g'| of the change of variables.
 """
 
 from typing import NamedTuple
@@ -37,20 +37,22 @@ class Chords(NamedTuple):
     lengths : ndarray, shape (n,)
     forces : ndarray, shape (n, 2)
         Means of -∇B·τ⊥.
-    slopes : ndarray, shape (n, 2)
-        Derivatives of `forces` with respect to the chord's own angle.
     bending : ndarray, shape (n, 2)
         Change of the force along the chord, as a multiple of κ.
     drift : ndarray, shape (n, 2)
         Change of the force along the chord without κ.
+    slopes, bending_slopes, drift_slopes : ndarray, shape (n, 2)
+        Derivatives of these three with respect to the chord's own angle.
     """
 
     angles: NDArray[np.float64]
     lengths: NDArray[np.float64]
     forces: NDArray[np.float64]
-    slopes: NDArray[np.float64]
     bending: NDArray[np.float64]
     drift: NDArray[np.float64]
+    slopes: NDArray[np.float64]
+    bending_slopes: NDArray[np.float64]
+    drift_slopes: NDArray[np.float64]
 
 
 class ChordLaw(NamedTuple):
@@ -143,18 +145,20 @@ def chord_densities(chords, law, out):
     P[0, 0], P[1, 1], P[2, 2] = law.curvature_variance, _UNKNOWN, law.position_variance
     for j in range(angles.shape[0]):
         f = b1 * chords.forces[j, 0] + b2 * chords.forces[j, 1]
-        g = (b1 * chords.bending[j, 0] + b2 * chords.bending[j, 1]) * mean[0]
-        g += b1 * chords.drift[j, 0] + b2 * chords.drift[j, 1]
+        g = b1 * (chords.bending[j, 0] * mean[0] + chords.drift[j, 0])
+        g += b2 * (chords.bending[j, 1] * mean[0] + chords.drift[j, 1])
         joint_covariance(P, law, lengths[j], joint)
         spread = joint[3, 3]
         seen = mean[1] + ahead * mean[0] - mean[2] / lengths[j] + w5 * f + w6 * g
         innovation = angles[j] - seen
         # What the errors of both nodes do to the angle is no force.
         own = 1.0 - (P[2, 2] + law.position_variance) / (lengths[j] ** 2 * spread)
-        slope = b1 * chords.slopes[j, 0] + b2 * chords.slopes[j, 1]
+        df = b1 * chords.slopes[j, 0] + b2 * chords.slopes[j, 1]
+        dg = b1 * (chords.bending_slopes[j, 0] * mean[0] + chords.drift_slopes[j, 0])
+        dg += b2 * (chords.bending_slopes[j, 1] * mean[0] + chords.drift_slopes[j, 1])
         out[0, j] = innovation / np.sqrt(spread)
         out[1, j] = -0.5 * (np.log(2 * np.pi * spread) + innovation**2 / spread)
-        out[1, j] += own * np.log(abs(1.0 - w5 * slope))
+        out[1, j] += own * np.log(abs(1.0 - w5 * df - w6 * dg))
         ratio = innovation / spread
         moved = mean[1] + turned * mean[0] + w3 * f + w4 * g
         mean[0] = faded * mean[0] + w1 * f + w2 * g + joint[0, 3] * ratio

@@ -133,16 +133,23 @@ def test_the_force_changes_with_the_chord_as_its_slope_says(smooth_curves):
     curve = smooth_curves[0]
     eta, xi = curve.pieces[0][:6], curve.deviations[0][:6]
     gamma, turn = eta - xi, 1e-5
-    forces = []
+    turned = []
     for angle in (-turn, turn):
         c, s = math.cos(angle), math.sin(angle)
         moved = eta.copy()
         moved[5] = eta[4] + np.array([[c, -s], [s, c]]) @ (eta[5] - eta[4])
-        forces.append(chords_of(moved, gamma, curve.ds).forces[4])
-    difference = (forces[1] - forces[0]) / (2 * turn)
-    slopes = chords_of(eta, gamma, curve.ds).slopes[4]
-    # Differences of order 2 over 1e-5.
-    assert slopes == pytest.approx(difference, rel=1e-6, abs=1e-8)
+        turned.append(chords_of(moved, gamma, curve.ds))
+    exact = chords_of(eta, gamma, curve.ds)
+    names = (
+        ("forces", "slopes"),
+        ("bending", "bending_slopes"),
+        ("drift", "drift_slopes"),
+    )
+    for name, slope in names:
+        before, after = (getattr(one, name)[4] for one in turned)
+        # Differences of order 2 over 1e-5.
+        difference = (after - before) / (2 * turn)
+        assert getattr(exact, slope)[4] == pytest.approx(difference, rel=1e-6, abs=1e-8)
 
 
 def test_forces_along_a_circle_are_its_line_integrals():

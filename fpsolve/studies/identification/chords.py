@@ -30,14 +30,17 @@ def chords_of(eta: Array, gamma: Array, ds: float) -> Chords:
     chord, moved = np.diff(eta, axis=0), np.diff(gamma, axis=0)
     xi = eta - gamma
     angles = np.unwrap(np.arctan2(chord[:, 1], chord[:, 0]))
-    middle, crossed = 0.5 * (xi[1:] + xi[:-1]), chord[:, ::-1] * (1.0, -1.0)
-    # A chord that turns moves its own end, and half of that the middle.
-    turned = middle * chord - 0.5 * chord[:, ::-1] ** 2
+    middle = 0.5 * (xi[1:] + xi[:-1])
+    # sin α, -cos α times the length, and the derivatives of cos α, sin α by α; a chord
+    # that turns moves its own end, and half of that the middle.
+    crossed, across = chord[:, ::-1] * (1.0, -1.0), chord[:, ::-1] * (-1.0, 1.0)
     return Chords(
         angles=angles,
         lengths=np.hypot(chord[:, 0], chord[:, 1]),
         forces=middle * crossed / ds,
-        slopes=turned / ds,
         bending=middle * chord,
         drift=(chord - moved) * crossed / ds,
+        slopes=(middle * chord + 0.5 * across * crossed) / ds,
+        bending_slopes=middle * across + 0.5 * across * chord,
+        drift_slopes=((chord - moved) * chord + across * crossed) / ds,
     )
