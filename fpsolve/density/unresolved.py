@@ -30,8 +30,8 @@ def unresolved(p: Array, grid: PhaseSpaceGrid) -> float:
     """Σ over ξ₁, ξ₂, α of ∫ |amplitudes| of the two shortest waves that a cell tells.
 
     Amplitudes fall from wave to wave where a density is smooth, faster than any power,
-    so these are larger than all that is missing: a few times the L1 error against runs on
-    finer cells (`validation/performance/levels.py` prints the range).
+    so these are larger than all that is missing: a few times the L1 error against runs
+    on finer cells (`validation/performance/levels.py` prints the range).
     """
     total = 0.0
     for axis, n in enumerate(p.shape):
