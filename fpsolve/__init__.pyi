@@ -94,6 +94,8 @@ from .spectral.evolution.smooth_steady import (
 from .spectral.evolution.solution import SpectralSolution as SpectralSolution
 from .spectral.evolution.steady import SpectralSteadyState as SpectralSteadyState
 from .spectral.evolution.steady import spectral_steady_state as spectral_steady_state
+from .studies.identification.identification import Identification as Identification
+from .studies.identification.identify import identify as identify
 from .studies.suggested_grid import suggest_grid as suggest_grid
 from .web.lay_web import lay_web as lay_web
 from .web.pattern import MeanPattern as MeanPattern

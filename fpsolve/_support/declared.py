@@ -40,9 +40,11 @@ _TABLES = (
     "model", "grid", "scheme", "initial", "potential", "p0", "settings", "options",
     "solver", "sampler", "versions", "environment", "provenance", "call",
     "fpsolve_checksums", "process", "web", "curve",
+    "undetermined",
 )  # fmt: skip
 _LISTS = (
     "saved_steps", "truncation", "sectors", "fpsolve_attributes", "nozzle_phases",
+    "notes",
 )  # fmt: skip
 OWN = frozenset((*_TEXTS, *_NUMBERS, *_INTEGERS, *_TABLES, *_LISTS))
 
@@ -130,6 +132,7 @@ def _types() -> TypeAdapter[Any]:
         **dict.fromkeys(_TEXTS, str), **dict.fromkeys(_NUMBERS, float),
         **dict.fromkeys(_INTEGERS, count), **dict.fromkeys(_TABLES, _TABLE),
         "saved_steps": counts, "truncation": counts, "fpsolve_attributes": list[str],
+        "notes": list[str], "undetermined": _TEXTS_BY_NAME,
         "model": _entries("Model", {"potential": _TABLE, "curve": _TABLE}),
         "scheme": _entries("Scheme", {"name": str, "order": int, "options": _TABLE}),
         "initial": start, "p0": start, "versions": _TEXTS_BY_NAME,

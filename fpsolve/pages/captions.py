@@ -55,6 +55,15 @@ CAPTIONS = {
         "The beginning of the fibre on the belt, as it was measured.",
         "A fibre on the belt, and its reference curve where it is known",
     ),
+    "identification/fibres": (
+        "The fibre that was measured, and one of the identified model.",
+        "A measured fibre and one of the model beside it",
+    ),
+    "identification/increments": (
+        "Increments of angle and curvature against the length between them; bands "
+        "hold 95 % of the model's own fibres.",
+        "Curves of the increments of data and model with bands",
+    ),
     "hydrodynamic/hydrodynamic": (
         "Plane densities at saved s; white: contours of the stationary density.",
         "Maps of the density, and curves of entropy, means and spread",

@@ -31,6 +31,7 @@ PAGES: dict[str, str | Callable[[Any, str], Section]] = {
     "check": "fpsolve.pages.cross_check:section",
     "spectrum": "fpsolve.pages.spectrum:section",
     "web-prediction": "fpsolve.pages.predicted_web:section",
+    "identification": "fpsolve.pages.identification:section",
     "rate": "fpsolve.pages.rates:section",
     "large-noise": "fpsolve.pages.limits:large_section",
     "white-noise": "fpsolve.pages.white_noise:white_section",

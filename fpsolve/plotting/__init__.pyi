@@ -17,6 +17,8 @@ from .fibres import plot_nozzles as plot_nozzles
 from .files import save_figures as save_figures
 from .homogeneity import plot_web_homogeneity as plot_web_homogeneity
 from .hydrodynamic import plot_hydrodynamic as plot_hydrodynamic
+from .identification import plot_identified_fibres as plot_identified_fibres
+from .identification import plot_increments as plot_increments
 from .limits import plot_large_noise as plot_large_noise
 from .limits import plot_white_noise as plot_white_noise
 from .marginals import plot_marginals as plot_marginals

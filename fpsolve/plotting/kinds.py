@@ -24,6 +24,7 @@ from fpsolve.plotting.fibre_curve import plot_fibre_curve
 from fpsolve.plotting.fibres import plot_fibre
 from fpsolve.plotting.homogeneity import plot_web_homogeneity
 from fpsolve.plotting.hydrodynamic import plot_hydrodynamic
+from fpsolve.plotting.identification import plot_identified_fibres, plot_increments
 from fpsolve.plotting.limits import plot_large_noise, plot_white_noise
 from fpsolve.plotting.marginals import plot_marginals
 from fpsolve.plotting.moments import plot_moments
@@ -165,6 +166,10 @@ FIGURES: dict[str, Callable[[Any], Figures]] = {
     # Beside the model that they are of.
     "spectrum": each(spectrum=(plot_spectrum, lambda found: found.model is not None)),
     "web-prediction": each(zones=(plot_predicted_web, always)),
+    "identification": each(
+        fibres=(plot_identified_fibres, lambda found: found.model is not None),
+        increments=(plot_increments, always),
+    ),
     "rate": each(
         integral=(plot_inverse_decay_rate, known("inverse_decay_rate")),
         rates=(plot_rates, known("gap", "branch_rate")),

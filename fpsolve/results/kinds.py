@@ -129,6 +129,10 @@ KINDS = {
         "predicted webs", "fpsolve.web.predict:predict_web",
         "fpsolve.web.prediction:WebPrediction",
     ),
+    "identification": Kind(
+        "identifications", "fpsolve.studies.identification.identify:identify",
+        "fpsolve.studies.identification.identification:Identification",
+    ),
     "rate": Kind(
         "rates against the noise",
         "fpsolve.studies.rates.rate_versus_noise:rate_versus_noise", counts="cases",

@@ -13,6 +13,9 @@ from .design.result import WebDesign as WebDesign
 from .ergodicity.averages import ErgodicFit as ErgodicFit
 from .ergodicity.averages import ergodic_averages as ergodic_averages
 from .ergodicity.averages import fit_ergodic_error as fit_ergodic_error
+from .identification.increments import IncrementCurves as IncrementCurves
+from .identification.increments import functional as functional
+from .identification.increments import increment_curves as increment_curves
 from .limits.energy_sectors import small_noise_spectrum as small_noise_spectrum
 from .limits.large_noise import large_noise_limit as large_noise_limit
 from .limits.orders import FittedOrder as FittedOrder

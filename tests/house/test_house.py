@@ -28,7 +28,9 @@ FLOOR = {room: number for number, rooms in enumerate(FLOORS) for room in rooms}
 # The public names, and the command as a module, are above everything.
 ROOF = ("", "__main__")
 # In studies: tools, then questions, which do not know each other.
-QUESTIONS = {"agreement", "ergodicity", "rates", "limits", "webs", "design"}
+QUESTIONS = {
+    "agreement", "ergodicity", "rates", "limits", "webs", "design", "identification",
+}  # fmt: skip
 # Loaded where they are used, in these rooms only; pydantic also checks what files say.
 GUESTS = {
     "matplotlib": {"plotting", "pages", "interop"},

@@ -143,6 +143,10 @@ MAKERS = {
         fp.LayDownModel(QUADRATIC, 2.0, fp.MovingBelt(0.2)), spacing=0.5,
         zones=[0.5, 2.0], bands=[(0.5, 2.0)], tolerance=0.05,
     ),
+    "identification": lambda: fp.identify(
+        fp.sample_paths(SMOOTH, 1, 200.0, 0.1, seed=1, save_at=0.1 * np.arange(2001)),
+        model="basic", method="functional", seed=2,
+    ),
     "rate": lambda: studies.rate_versus_noise(
         QUADRATIC, [2.0], quick=True, parts=["gap"], workers=0
     ),

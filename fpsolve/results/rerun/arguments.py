@@ -18,6 +18,7 @@ from fpsolve.model.curves.dictionaries import curve_from_dict
 from fpsolve.model.potentials.dictionaries import potential_from_dict
 from fpsolve.model.process import Process
 from fpsolve.model.reading import model_from_dict
+from fpsolve.paths.fibres.fibre_curve import FibreCurve
 from fpsolve.paths.law_dataset import law_from_formula
 from fpsolve.paths.laws import DensityLaw
 from fpsolve.results.rerun.calling import OfOwner, result_of
@@ -43,6 +44,7 @@ _SCHEME, _MODEL = "$scheme", "$model"
 READERS: dict[str, Callable[[Any], Any]] = {
     "$potential": potential_from_dict,
     "$curve": curve_from_dict,
+    "$fibre_curve": lambda about: FibreCurve(**about),
     _MODEL: model_from_dict,
     "$grid": grid_from_dict,
     "$plane": PlaneGrid.from_dict,
