@@ -26,6 +26,7 @@ from fpsolve.spectral.resolvent.smooth_waves import (
     characteristic,
     position_variances,
 )
+from fpsolve.web import coherent
 
 ISOTROPIC = fp.QuadraticPotential()
 V = 0.2
@@ -69,6 +70,18 @@ def test_every_placement_gives_the_same_law(narrow):
     for k in (0.5, 1.5):
         found = [characteristic(one, (0.3, k)) for one in (law, wider)]
         assert abs(found[0]) == pytest.approx(abs(found[1]), abs=2e-4)
+
+
+def test_curvature_and_direction_balance(narrow):
+    """E κ² = K²R/2 + E cos²α/σ1² + E sin²α/σ2² − v²/σ1² exactly; ⟨τ⊗τ⟩ is told so."""
+    law = narrow.generator(LAW)
+    double = angle_moments(law, 0)[2]
+    force = 0.5 * (1 + double) + 0.5 * (1 - double) / 0.7**2 - V**2
+    square = angle_moments(law, 2)[0]
+    # Of the 20 that the noise gives; the truncation leaves 4e-4 of the force's part.
+    assert square - NARROW.curvature_variance == pytest.approx(force, rel=2e-3)
+    orientation, _ = coherent.orientation(narrow)
+    assert orientation[0, 0] == pytest.approx(0.5 * (1 + double), abs=1e-3)
 
 
 @pytest.mark.parametrize("k", [(0.0, 1.6), (1.2, 1.4)])

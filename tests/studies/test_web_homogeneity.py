@@ -127,3 +127,22 @@ def test_what_no_study_can_be_of_is_refused_before_a_web_is_laid(options, messag
                  "spacings": [0.5], "zones": [0.25, 1.0], **options}  # fmt: skip
     with pytest.raises(ValueError, match=message):
         studies.web_homogeneity(**arguments, workers=0)
+
+
+@pytest.mark.nightly
+def test_webs_of_smooth_fibres_vary_as_predicted():
+    dataset = studies.web_homogeneity(
+        UNIT, [3.0], [0.3], [0.5], zones=[0.5, 1.0, 3.0], n_webs=N_WEBS, ds=0.02,
+        relaxation_length=0.1, tolerance=0.05, workers=0,
+    )  # fmt: skip
+    assert dataset.attrs["relaxation_length"] == 0.1
+    z = dataset["z"].to_numpy()
+    assert np.abs(z).max() < stdtrit(N_WEBS - 1, 1 - 0.005 / z.size)
+    # The basic prediction would have been missed: it is a sixth larger or smaller.
+    basic = fp.predict_web(
+        fp.LayDownModel(UNIT, 3.0, fp.MovingBelt(0.3)), spacing=0.5,
+        zones=dataset["zone"].to_numpy(), tolerance=0.05,
+    )  # fmt: skip
+    one = dataset.isel(noise=0, belt_speed=0, spacing=0)
+    away = np.abs(one["simulated"].to_numpy() - basic.cv)
+    assert (away > 4 * one["standard_error"].to_numpy()).any()

@@ -9,10 +9,16 @@ from typing import Any, ClassVar
 import numpy as np
 
 from fpsolve._support.arrays import Array
+from fpsolve.errors import ToleranceError
 from fpsolve.model.persistence import Persistence
 from fpsolve.model.smooth import SmoothLayDownModel
-from fpsolve.spectral.bases.placement import NARROWEST, Placement
-from fpsolve.spectral.bases.placing import coupled_discretisation
+from fpsolve.spectral.bases.placement import (
+    NARROWEST,
+    Placement,
+    first_placement,
+    throwing_ranges,
+)
+from fpsolve.spectral.resolvent.centre import centre_of
 from fpsolve.spectral.resolvent.ladder import Ladder, grown
 from fpsolve.spectral.resolvent.smooth_basis import SmoothBasis
 from fpsolve.spectral.resolvent.smooth_generator import SmoothGenerator
@@ -23,13 +29,16 @@ from fpsolve.spectral.resolvent.smooth_waves import (
     position_variances,
 )
 
-__all__ = ["SmoothLadder"]
+__all__ = ["SmoothLadder", "settled"]
 
 # Of the smallest truncation in ξ and α; that in κ follows.
 DEGREE, HARMONICS = 8, 5
 # Of the variances of ξ those of the weight, where they are larger than the placement of
 # the stationary density has them: plane waves need wider ones than moments do.
 SHARE = 2.0 / 3.0
+# A weight that has moved less, in units of its width, is where it should be; how often
+# it may move.
+SETTLED, MOVES = 0.02, 12
 # What the stationary law of predictions may be wrong by, where its error is told.
 LAW = 2e-3
 # States of its largest truncation, of which half are factorised, as real numbers.
@@ -61,8 +70,7 @@ class SmoothLadder(Ladder):
     _known: float = field(default=math.inf, init=False)
 
     def __post_init__(self) -> None:
-        self.placement = coupled_discretisation(self.model).placement
-        _, *variances = position_variances(self.generator(self.first))
+        self.placement, variances = settled(self.model, self.first)
         known = [
             max(variance, NARROWEST * sigma**2)
             for variance, sigma in zip(variances, self.scales, strict=True)
@@ -72,7 +80,6 @@ class SmoothLadder(Ladder):
             max(width, math.sqrt(SHARE) * spread)
             for width, spread in zip(self.placement.widths, self.spreads, strict=True)
         ]
-        self._kept.clear()
         self.placement = replace(self.placement, widths=(widths[0], widths[1]))
         self.centre = self.placement.centre
 
@@ -139,3 +146,29 @@ class SmoothLadder(Ladder):
         """E cos 2α in two truncations, the finer one first."""
         fine, coarse = (float(angle_moments(law, 0)[2]) for law in self.laws(LAW))
         return fine, coarse
+
+
+def settled(
+    model: SmoothLayDownModel, basis: SmoothBasis
+) -> tuple[Placement, tuple[float, float]]:
+    """The placement about the stationary law, and the variances of ξ.
+
+    From the mean of the basic model, moved to the moments of a small truncation until
+    they stay.
+
+    Raises
+    ------
+    ToleranceError
+        If they do not.
+    """
+    place = replace(first_placement(model), centre=centre_of(model.white_noise_limit))
+    distance = math.inf
+    for _ in range(MOVES):
+        generator = SmoothGenerator(model, place, basis)
+        mean, along, across = position_variances(generator)
+        moved = place.about(mean, (along, across), throwing_ranges(model))
+        distance, place = place.distance(moved), moved
+        if distance < SETTLED:
+            return place, (along, across)
+    remedy = "choose a slower belt or a larger noise: no basis stays about the mean"
+    raise ToleranceError(distance, SETTLED, remedy)
