@@ -73,13 +73,14 @@ def predict_web(
     Parameters
     ----------
     model : LayDownModel, SmoothLayDownModel or Process
-        With a `QuadraticPotential`, of the basic model also with another isotropic
-        smooth potential, and a belt at constant speed v ≠ 0. Of a process all lengths
-        are metres.
+        With a `QuadraticPotential`, of the basic model also with an isotropic potential
+        that is smooth in ‖ξ‖², and a belt at constant speed v ≠ 0. Of a process all
+        lengths are metres.
     spacing : float
         Distance d of the spinning positions across the belt.
     zones : array_like
-        Sides x of square zones, one or many, 1e-4 to 1000 of the larger throwing range.
+        Sides x of square zones, one or many, 1e-4 to 1000 of the larger throwing range,
+        which for other potentials is the root mean square of ξ2 at rest.
     positions : {"regular", "random"}
         Whether the positions are at equal distances or anywhere.
     bands : sequence of pairs of float, optional

@@ -67,6 +67,8 @@ def web_spectrum(
     direction of k, corrected by what it lacks at |k| σ = 300 or at |k| = 20 A².
     Long waves end in Ŝ = k·C k, no fibre gets lost: C = 2 E ξ (−L)⁻¹ (ξ − E ξ), which
     is used up to |k| = 1e-3 of what it forgets over, so that tiny k lose no digits.
+    On a belt at rest under an isotropic potential long waves split into sectors of the
+    angular index, which are small: they are solved down to A = 0.2.
 
     Of a smooth fibre the functions have a third factor, Hermite polynomials of κ, and
     Gaussians that leave the law its wider tails. Short waves see arcs instead of
@@ -77,12 +79,16 @@ def web_spectrum(
     Parameters
     ----------
     model : LayDownModel or SmoothLayDownModel
-        With a `QuadraticPotential` and a belt at rest or at constant speed.
+        With a `QuadraticPotential`, of the basic model also with an isotropic potential
+        that is smooth in ‖ξ‖², such as B = r⁴/4 or a user's own, and a belt at rest or
+        at constant speed.
     k1, k2 : array_like
         Wave numbers along and across the belt in radians per unit of ξ; they broadcast.
     tolerance : float
-        For every number, relative to itself; beyond |k| σ = 3 relative to the larger of
-        itself and σ/(1 + |k| σ), σ the smaller throwing range.
+        For every number, relative to itself; beyond |k| σ = 3, and of smooth fibres
+        everywhere, relative to the larger of itself and σ/(1 + |k| σ), σ the smaller
+        throwing range or, for a potential that has none, the root mean square of ξ1 at
+        rest.
 
     Returns
     -------
@@ -94,7 +100,8 @@ def web_spectrum(
     Raises
     ------
     ValueError
-        As `spectral_solve`, or if a wave number is not finite.
+        If the potential is neither quadratic nor isotropic and smooth, the noise is not
+        positive, the curve is no belt at constant speed, or a wave number not finite.
     TypeError
         If the model is no lay-down model.
     ToleranceError

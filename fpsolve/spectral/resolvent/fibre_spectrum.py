@@ -15,6 +15,7 @@ from fpsolve.spectral.resolvent.ladder import Ladder
 from fpsolve.spectral.resolvent.limit import limit_derivatives, short_wave_limit
 from fpsolve.spectral.resolvent.long_limit import NEAR, long_wave_limit, reach_of
 from fpsolve.spectral.resolvent.plane_waves import WaveVector
+from fpsolve.spectral.resolvent.rest import at_rest, is_round_at_rest
 from fpsolve.spectral.resolvent.sensitivity import (
     long_wave_columns,
     short_wave_columns,
@@ -109,7 +110,11 @@ def _columns(
     sigma1, sigma2 = ladder.scales
     long = np.hypot(distinct[:, 0] * sigma1, distinct[:, 1] * sigma2) <= LONG
     others = np.flatnonzero(~long)
-    values[:, 0], errors[:, 0], near = longest_waves(ladder, distinct, tolerance)
+    if method.n_columns == 1 and is_round_at_rest(ladder.model):
+        known = waves_at_rest(ladder, distinct, long, tolerance)
+    else:
+        known = longest_waves(ladder, distinct, tolerance)
+    values[:, 0], errors[:, 0], near = known
     if method.n_columns > 1:
         for place in np.flatnonzero(near & distinct.any(axis=1)):
             longest = longest_derivatives(ladder, distinct[place], tolerance, method)
@@ -134,6 +139,17 @@ def floor_of(ladder: Ladder, k: Array) -> Array:
     """σ/(1 + |k| σ): of the size of Ŝ at rest, and never zero."""
     sigma = min(ladder.scales)
     return np.asarray(sigma / (1.0 + k * sigma))
+
+
+def waves_at_rest(
+    ladder: Ladder, k: Array, long: NDArray[np.bool_], tolerance: float
+) -> tuple[Array, Array, NDArray[np.bool_]]:
+    """Ŝ of all long waves and bounds of its errors, by sectors; and which these are."""
+    values, errors, size = np.zeros(len(k)), np.zeros(len(k)), np.hypot(*k.T)
+    asked = long & (size > 0)
+    if asked.any():
+        values[asked], errors[asked] = at_rest(ladder.model, size[asked], tolerance)
+    return values, errors, long
 
 
 def longest_waves(

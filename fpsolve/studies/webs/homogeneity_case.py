@@ -14,7 +14,7 @@ from fpsolve.model.laydown import LayDownModel
 from fpsolve.model.persistence import Persistence
 from fpsolve.model.potentials.quadratic import QuadraticPotential
 from fpsolve.model.smooth import SmoothLayDownModel
-from fpsolve.spectral.evolution.quadratic import quadratic
+from fpsolve.spectral.resolvent.fibre import scales_of
 from fpsolve.web.lay_web import lay_web
 from fpsolve.web.predict import predict_web
 
@@ -107,7 +107,7 @@ def web_squares(
     """⟨(v d m − 1)²⟩ of one web, by zone."""
     widest = laid.zones[-1]
     # A smooth fibre lies as wide as one with the range √F σ at large noise.
-    sigma = quadratic(model).sigma2 * math.sqrt(Persistence.of(model).factor)
+    sigma = scales_of(model)[1] * math.sqrt(Persistence.of(model).factor)
     cells = max(_FEWEST, math.ceil((widest + _AROUND * sigma) / spacing))
     columns = _LONG * round(widest / laid.pixel)
     web = lay_web(
