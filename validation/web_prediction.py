@@ -21,20 +21,25 @@ from fpsolve.paths import EquilibriumLaw
 from fpsolve.spectral.resolvent import smooth_solutions
 from fpsolve.spectral.resolvent.basis import Basis
 from fpsolve.spectral.resolvent.fibre import Fibre, fibre_of
-from fpsolve.spectral.resolvent.generator import Generator
+from fpsolve.spectral.resolvent.ladder import Ladder
+from fpsolve.spectral.resolvent.round_ladder import RoundLadder
 from fpsolve.spectral.resolvent.smooth_ladder import SmoothLadder
 from fpsolve.spectral.resolvent.waves import along_long_waves
 
-# Noise, belt speed, σ2, relaxation length or 0 for the basic model.
-QUICK = [(2.0, 0.2, 1.0, 0.0), (3.0, 0.3, 1.0, 0.1)]
+ROUND, QUARTIC = fp.QuadraticPotential(), fp.PowerPotential(4)
+NARROW = fp.QuadraticPotential(1.0, 0.6)
+# Noise, belt speed, potential, relaxation length or 0 for the basic model.
+QUICK = [(2.0, 0.2, ROUND, 0.0), (3.0, 0.3, ROUND, 0.1)]
 FULL = [
-    (1.0, 0.1, 1.0, 0.0), (1.0, 0.3, 1.0, 0.0), (2.0, 0.2, 0.6, 0.0),
-    (10.0, 0.3, 1.0, 0.0), (1.0, 0.1, 1.0, 0.1), (2.0, 0.2, 0.6, 0.1),
-    (3.0, 0.3, 1.0, 0.5),
+    (1.0, 0.1, ROUND, 0.0), (1.0, 0.3, ROUND, 0.0), (2.0, 0.2, NARROW, 0.0),
+    (10.0, 0.3, ROUND, 0.0), (1.0, 0.1, QUARTIC, 0.0), (2.0, 0.2, QUARTIC, 0.0),
+    (1.0, 0.1, ROUND, 0.1), (2.0, 0.2, NARROW, 0.1), (3.0, 0.3, ROUND, 0.5),
 ]  # fmt: skip
-Case = tuple[float, float, float, float]
+Case = tuple[float, float, fp.Potential, float]
+# Degree and harmonics of what errors of the basic model are compared with.
+LARGE, LARGE_ROUND = Basis(40, 20), Basis(34, 14)
 # Steps by which the large truncation of a smooth fibre is larger than the smallest.
-LARGE = 3
+STEPS = 3
 # Of spectra beside periodograms, whose standard errors are several percent.
 TOLERANCE = 5e-3
 # Arclength between two points of a path; fine against |k| <= 3. The sum over lags has
@@ -50,37 +55,41 @@ REACH = 10.0
 
 
 def belt(
-    noise: float, speed: float, sigma2: float, length: float
+    noise: float, speed: float, potential: fp.Potential, length: float
 ) -> fp.LayDownModel | fp.SmoothLayDownModel:
-    potential, curve = fp.QuadraticPotential(1.0, sigma2), fp.MovingBelt(speed)
+    curve = fp.MovingBelt(speed)
     if length:
         return fp.SmoothLayDownModel(potential, length, noise, curve)
     return fp.LayDownModel(potential, noise, curve)
 
 
 def told(case: Case) -> str:
-    noise, speed, sigma2, length = case
-    return f"A = {noise:g}, v = {speed:g}, σ2 = {sigma2:g}, R = {length:g}"
+    noise, speed, potential, length = case
+    return f"{potential.formula}, A = {noise:g}, v = {speed:g}, R = {length:g}"
 
 
 def exact_of(fibre: Fibre, k1: float, k2: float) -> float:
     """Ŝ as a truncation knows it that is larger by far."""
     if isinstance(fibre, SmoothLadder):
-        large = fibre.generator(fibre.first.grown(LARGE))
-        return float(smooth_solutions.along_long_waves(large, k1, [k2])[0])
-    large = Generator(fibre.model, Basis(40, 20), fibre.centre)
-    return float(along_long_waves(large, k1, [k2])[0])
+        grown = fibre.generator(fibre.first.grown(STEPS))
+        return float(smooth_solutions.along_long_waves(grown, k1, [k2])[0])
+    assert isinstance(fibre, Ladder)
+    large = LARGE_ROUND if isinstance(fibre, RoundLadder) else LARGE
+    return float(along_long_waves(fibre.generator(large), k1, [k2])[0])
 
 
 def check_coverage(report: Report, cases: list[Case]) -> None:
     """Distance to a larger truncation in units of the errors."""
     rng = np.random.default_rng(1)
     for case in cases:
-        fibre, sigma2, shares = fibre_of(belt(*case)), case[2], []
+        fibre, shares = fibre_of(belt(*case)), []
         # The largest truncation of a smooth fibre holds no shorter waves.
         for size in (0.2, 1.0, 2.0) if case[3] else (0.2, 1.0, 2.0, 2.8):
             beta = rng.uniform(0, 0.5 * math.pi)
-            k1, k2 = size * math.cos(beta), size * math.sin(beta) / sigma2
+            parts = size * math.cos(beta), size * math.sin(beta)
+            k1, k2 = (
+                part / sigma for part, sigma in zip(parts, fibre.scales, strict=True)
+            )
             exact = exact_of(fibre, k1, k2)
             for tolerance in (3e-2, 1e-2) if case[3] else (1e-2, 1e-3):
                 found = fibre.spectrum(np.array([k1]), np.array([k2]), tolerance)

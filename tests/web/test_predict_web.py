@@ -198,6 +198,20 @@ def test_zones_of_simulated_fibres_agree_within_standard_errors(prediction):
     assert error < 0.03 * expected
 
 
+@pytest.mark.nightly
+def test_laid_webs_of_a_quartic_potential_vary_as_predicted():
+    """Of one web of 160 by 40, with the standard errors of its blocks."""
+    model = fp.LayDownModel(fp.PowerPotential(4), 2.0, fp.MovingBelt(0.2))
+    zones = np.array([0.5, 1.0, 2.0])
+    prediction = fp.predict_web(model, spacing=0.25, zones=zones, tolerance=0.02)
+    web = fp.lay_web(model, width=40.0, length=160.0, spacing=0.25, pixel=0.25,
+                     seed=3, ds=1 / 32)  # fmt: skip
+    for zone, cv, error in zip(zones, prediction.cv, prediction.errors, strict=True):
+        laid = web.coefficient_of_variation(float(zone))
+        off = abs(float(laid) - cv)
+        assert off <= 3 * math.hypot(laid.standard_error, error)
+
+
 def overlap(distance, side):
     return np.maximum(0.0, 1.0 - np.abs(distance) / side) / side
 

@@ -21,6 +21,7 @@ from fpsolve.spectral.resolvent.ladder import (
     SAFETY,
     grown,
 )
+from fpsolve.spectral.resolvent.round_generator import throwing_range
 from fpsolve.spectral.resolvent.waves import solver_of
 
 __all__ = ["AtRest", "at_rest", "is_round_at_rest"]
@@ -120,6 +121,7 @@ def at_rest(model: LayDownModel, k: Array, tolerance: float) -> tuple[Array, Arr
         coarse, before = fine, change
     degree = grown(FIRST, LAST_LEVEL).degree
     remedy = f"raise `tolerance`: no truncation of degree {degree} is fine enough"
-    if model.noise < LOW_NOISE:
+    sigma = throwing_range(radial_basis(model.potential, 1))
+    if model.noise * sigma**0.5 < LOW_NOISE:
         remedy += f"; or the noise, with {model.noise:g} orbits last for long"
     raise ToleranceError(error, tolerance, remedy)
