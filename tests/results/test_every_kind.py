@@ -145,7 +145,7 @@ MAKERS = {
     ),
     "identification": lambda: fp.identify(
         fp.sample_paths(SMOOTH, 1, 200.0, 0.1, seed=1, save_at=0.1 * np.arange(2001)),
-        model="basic", method="functional", seed=2,
+        model="basic", seed=2,
     ),
     "rate": lambda: studies.rate_versus_noise(
         QUADRATIC, [2.0], quick=True, parts=["gap"], workers=0

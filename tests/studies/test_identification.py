@@ -151,3 +151,17 @@ def test_the_bootstrap_has_the_spread_of_surrogates():
 def test_means_of_all_fibres_are_pooled():
     many = Squares(np.arange(10.0).reshape(5, 2), np.ones((3, 2)), np.ones((3, 2)))
     np.testing.assert_allclose(many.pooled().xi[:, 0], np.arange(5) * 2 + 0.5)
+
+
+def test_by_likelihood_the_true_model_has_the_smaller_aic():
+    data = fibre("smooth")
+    smooth, basic = (fp.identify(data, model=name) for name in ("smooth", "basic"))
+    assert smooth.method == "likelihood"
+    for parameter, value in smooth.parameters.items():
+        error = smooth.standard_errors[parameter]
+        # One of four beyond 3.5 standard errors once in 500 times.
+        assert abs(value - TRUE[parameter]) < 3.5 * error, parameter
+    assert smooth.aic == pytest.approx(8 - 2 * smooth.log_likelihood)
+    # Smooth fibres of R = 5 Δs do not look like rough ones: far more than by chance.
+    assert smooth.aic < basic.aic - 100
+    assert min(smooth.p_values.values()) > 0.01

@@ -172,6 +172,8 @@ def _shifts(estimate: Estimate, n: int, seed: int) -> Array:
     """Errors of the logarithms of the parameters, drawn from their law; (n_par, n)."""
     values = np.array(list(estimate.parameters.values()))
     relative = estimate.covariance / np.outer(values, values)
+    # Of a parameter that is not determined the variance may be infinite.
+    relative = np.nan_to_num(relative, nan=0.0, posinf=1.0, neginf=0.0)
     drawn = np.random.default_rng(seed).multivariate_normal(
         np.zeros(len(values)), relative, size=n, check_valid="ignore"
     )

@@ -22,12 +22,26 @@ from fpsolve.studies.identification.increments import (
     lags_up_to,
     usual_k_max,
 )
+from fpsolve.studies.identification.likelihood_basic import estimate_basic
+from fpsolve.studies.identification.likelihood_smooth import estimate_smooth
 
 __all__ = ["identify"]
 
 MODELS = ("basic", "smooth")
+
+
+def estimate_by_likelihood(
+    fibre: FibreCurve, model: str, *, k_max: int, seed: int
+) -> Estimate:
+    """The most likely parameters, for which nothing is drawn and no lag counts."""
+    return estimate_basic(fibre) if model == "basic" else estimate_smooth(fibre)
+
+
 # What a method is called, and what estimates by it.
-ESTIMATORS: dict[str, Callable[..., Estimate]] = {"functional": estimate_by_functional}
+ESTIMATORS: dict[str, Callable[..., Estimate]] = {
+    "likelihood": estimate_by_likelihood,
+    "functional": estimate_by_functional,
+}
 
 
 def _described(value: Any, bound: Mapping[str, Any]) -> Any:
@@ -48,14 +62,16 @@ def identify(
     ds: float | None = None,
     curve: Curve | None = None,
     model: str = "smooth",
-    method: str = "functional",
+    method: str = "likelihood",
     k_max: int | None = None,
     seed: int = 0,
 ) -> Identification:
     """Parameters of the basic or the smooth model whose fibres are like the given one.
 
     The potential is quadratic, B = (ξ₁²/σ₁² + ξ₂²/σ₂²)/2, and the reference curve is
-    known. "functional" is the method of the paper: the surrogate's functional (24) is
+    known. "likelihood" finds the most likely parameters of the chord angles, see
+    `studies.identification.likelihood_smooth`: the smallest errors where the model is
+    true. "functional" is the method of the paper: the surrogate's functional (24) is
     made equal to that of the data by a relaxed quasi-Newton method, see
     `studies.identification.functional_estimate`.
 
@@ -73,7 +89,7 @@ def identify(
     curve : Curve, optional
         Reference curve γ, where the fibre has none.
     model : {"smooth", "basic"}
-    method : {"functional"}
+    method : {"likelihood", "functional"}
     k_max : int, optional
         Longest lag of increments in steps; by default 3 of the larger √⟨ξ²⟩.
     seed : int, optional
