@@ -165,3 +165,21 @@ def test_by_likelihood_the_true_model_has_the_smaller_aic():
     # Smooth fibres of R = 5 Δs do not look like rough ones: far more than by chance.
     assert smooth.aic < basic.aic - 100
     assert min(smooth.p_values.values()) > 0.01
+
+
+@pytest.mark.nightly
+def test_below_a_nozzle_and_with_scattered_points_errors_hold():
+    nozzle = fp.RotatingNozzle(0.1, 2.0, 0.2, 0.4)
+    model = fp.SmoothLayDownModel(POTENTIAL, 0.5, 1.0, nozzle)
+    paths = fp.sample_paths(
+        model, 1, 800.0, 0.025, seed=5, save_at=0.1 * np.arange(8001),
+        initial=fp.paths.EquilibriumLaw(POTENTIAL),
+    )  # fmt: skip
+    scatter = 0.01 * np.random.default_rng(5).standard_normal((8001, 2))
+    eta = paths.eta[:, 0] + scatter
+    data = fp.FibreCurve(eta, 0.1, nozzle, position_error=0.01)
+    result = fp.identify(data, method="functional", seed=2)
+    for parameter, value in result.parameters.items():
+        # One of four beyond 3.5 standard errors once in 500 times.
+        error = result.standard_errors[parameter]
+        assert abs(value - TRUE[parameter]) < 3.5 * error, parameter
