@@ -157,14 +157,13 @@ def check_cases(report: Report, cases: list[Case], seed: int) -> None:
 
 def show_misspecified(report: Report) -> None:
     """What is found of a fibre in B = |ξ|⁴/4, and of scattered points."""
-    quartic = fp.IsotropicPotential(lambda r: r**4 / 4, lambda r: r**3)
-    model = fp.SmoothLayDownModel(quartic, 0.5, 1.0, BELT)
-    paths = fp.sample_paths(model, 1, 1020.0, 0.05, seed=3)
+    model = fp.SmoothLayDownModel(fp.PowerPotential(4.0), 0.5, 1.0, BELT)
+    paths = fp.sample_paths(model, 1, 520.0, 0.05, seed=3)
     path = paths.replay(0, 4)
     inside = path.s >= 20.0 - 1e-9
     curve = fp.FibreCurve(path.eta[inside], 0.2, BELT, s_start=20.0)
     spread = np.std(path.xi[inside], axis=0)
-    exact = Case(1.0, 0.5, 1.0, BELT, 1000.0, 0.2, 1)
+    exact = Case(1.0, 0.5, 1.0, BELT, 500.0, 0.2, 1)
     scattered = fibres(exact._replace(position_error=0.005), 4)[0]
     quarter = f"B = r⁴/4, spread of ξ {listed(spread)}"
     for name, one in ((quarter, curve), ("errors of 0.005, told", scattered)):
