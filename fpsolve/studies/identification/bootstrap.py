@@ -97,15 +97,18 @@ def _estimates(
     curves: list[FibreCurve], estimator: Callable[..., Estimate], workers: int | None
 ) -> Array:
     """Parameters of those curves from which there are any, (n, n_parameters)."""
-    tasks: dict[int, Any] = {k: (estimator, one) for k, one in enumerate(curves)}
+    tasks: dict[int, Any] = {
+        k: (_tried, estimator, one) for k, one in enumerate(curves)
+    }
+    found: dict[int, Estimate | None] = {}
     with executor_for(None, workers, len(tasks)) as executor:
         if executor is None:
-            found: dict[int, Estimate | None] = {
-                key: _tried(*task) for key, task in tasks.items()
-            }
+            found = {key: _tried(*task[1:]) for key, task in tasks.items()}
         else:
-            ended = finished_tasks(executor, tasks)
-            found = {key: result for key, result, _ in ended}
+            for key, result, error in finished_tasks(executor, tasks):
+                if error is not None:
+                    raise error
+                found[key] = result
     kept = (found[key] for key in sorted(found))
     return np.array([list(one.parameters.values()) for one in kept if one is not None])
 
