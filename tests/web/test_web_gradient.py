@@ -9,7 +9,7 @@ from web_numbers import NUMBERS, choose_few_nodes, model_of
 import fpsolve as fp
 from fpsolve.pages import predicted_web
 from fpsolve.results.kinds import from_xarray
-from fpsolve.spectral.resolvent.ladder import Ladder
+from fpsolve.spectral.resolvent.fibre import BasicFibre
 from fpsolve.web.gradient import strip_gradient
 
 # Sides in triples, for differences in the side.
@@ -90,7 +90,7 @@ def test_strips_of_a_slow_belt_change_as_those_of_a_gaussian():
     """2 e^{−2π²j²σ2²/d²}: −4π²j²σ2/d² in σ2, 4π²j²σ2²/d³ in d, relative to it."""
     model = fp.LayDownModel(fp.QuadraticPotential(1.0, 0.8), 2.0, fp.MovingBelt(1e-6))
     spacing, j = 3.0, np.arange(1, 4)
-    values, errors = strip_gradient(Ladder(model), spacing, 3)
+    values, errors = strip_gradient(BasicFibre(model), spacing, 3)
     amplitude = 2 * np.exp(-2 * (math.pi * j * 0.8 / spacing) ** 2)
     expected = np.zeros((5, 3))
     expected[3] = -4 * (math.pi * j) ** 2 * 0.8 / spacing**2 * amplitude

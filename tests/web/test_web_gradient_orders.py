@@ -9,12 +9,12 @@ import pytest
 from scipy.special import erf
 from web_numbers import NUMBERS, choose_few_nodes, model_of
 
+from fpsolve.spectral.resolvent import fibre as fibre_module
 from fpsolve.spectral.resolvent import fibre_spectrum
 from fpsolve.spectral.resolvent.basis import Basis
+from fpsolve.spectral.resolvent.fibre import BasicFibre
 from fpsolve.spectral.resolvent.generator import Generator
-from fpsolve.spectral.resolvent.ladder import Ladder
 from fpsolve.web import coherent, gradient
-from fpsolve.web import table as table_module
 from fpsolve.web import zone_variance as zone_module
 from fpsolve.web.gradient import square_gradient
 from fpsolve.web.table import Source, SpectrumTable
@@ -52,7 +52,7 @@ def gaussian_variance(side, noise, sigma):
 @pytest.mark.parametrize("side", [0.3, 2.0, 10.0])
 def test_zones_of_a_gaussian_spectrum_have_their_exact_derivatives(side):
     """Of the variance itself by differences of the closed form, 1e-8 at h = 1e-4."""
-    ladder = Ladder(model_of(NUMBERS))
+    ladder = BasicFibre(model_of(NUMBERS))
     made = SpectrumTable.of(ladder, 1e-3)
     table = GaussianTable(GaussianSource(ladder, 1e-12, True), made.nodes)
     table = table.finer("along").finer("shortness").finer("shortness")
@@ -99,7 +99,7 @@ class Changed(Generator):
         return super().matrix + sum(factor * change for factor, change in changes)
 
 
-class Kept(Ladder):
+class Kept(BasicFibre):
     """One truncation of each kind, whose polynomials do not move with the numbers."""
 
     numbers = NUMBERS
@@ -128,11 +128,11 @@ def test_differences_converge_with_order_two_at_every_halving(monkeypatch, posit
     monkeypatch.setattr(fibre_spectrum, "FIRST_LONG", Basis(6, 4))
     for name, number in (("DEGREE", 4), ("HARMONICS", 4), ("PER_ROOT", 0.0)):
         monkeypatch.setattr(fibre_spectrum, name, number)
-    monkeypatch.setattr(table_module, "LAW", Basis(6, 4))
+    monkeypatch.setattr(fibre_module, "ANGLE", Basis(6, 4))
     # Without errors, and not as far as they are small.
     for name, number in (("AXES", ()), ("FAR_PERIODS", 20.0), ("FAR_SCALES", 10.0)):
         monkeypatch.setattr(zone_module, name, number)
-    for module in (coherent, gradient):
+    for module in (fibre_module, gradient):
         monkeypatch.setattr(module, "FINE", Basis(8, 5))
         monkeypatch.setattr(module, "COARSE", Basis(6, 4))
     side, model = 0.7, model_of(NUMBERS)
@@ -147,7 +147,7 @@ def test_differences_converge_with_order_two_at_every_halving(monkeypatch, posit
         added = of_positions(ladder, numbers[4], side)[0]
         return table, value, per_line * value + added
 
-    nodes = SpectrumTable.of(Ladder(model), 0.1).nodes
+    nodes = SpectrumTable.of(BasicFibre(model), 0.1).nodes
     table, value, _ = square(NUMBERS, gradients=True)
     exact, _ = square_gradient(table, NUMBERS[4], side, positions, (value, 0.0))
     for parameter in range(5):
