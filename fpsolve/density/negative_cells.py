@@ -50,8 +50,7 @@ def add_cells(solution: Solution, runs: Sequence[Solution]) -> Solution:
         * (model.noise / solution.grid.spacing[2]) ** 2
         * mass,
     }
-    options, grid = solution.scheme["options"], solution.grid
-    more["density_l1"] = cells_error(options, solution.densities, grid)
+    more["density_l1"] = cells_error(solution)
     for name, values in more.items():
         errors[name] = errors[name] + values
     return replace(solution, errors=errors)

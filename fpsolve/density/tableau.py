@@ -13,7 +13,7 @@ from fpsolve.density.extrapolation import WINDOW, resolved
 from fpsolve.density.negative_cells import add_cells
 from fpsolve.density.solution import Solution
 from fpsolve.density.unresolved import cells_error
-from fpsolve.evolution.richardson import ROUNDING, levelled_series, tableau
+from fpsolve.evolution.richardson import ROUNDING, levelled_series, safety, tableau
 from fpsolve.evolution.series import is_extrapolated
 from fpsolve.evolution.stored import LazyDensities, WeightedDensities, weighted
 
@@ -24,8 +24,9 @@ def combined(runs: Sequence[Solution]) -> Solution:
     """u = Σ_j w_j u_{ds/j}, j = 1, …, n, with w of Aitken and Neville in ds².
 
     The scheme's error has even powers of ds only, so u is of order 2n. The estimate is
-    the difference to the combination without u_{ds}, of order 2n − 2: it is the error
-    of that one and covers that of u as long as the tableau converges. Out of the
+    the difference to the combination without u_{ds}, of order 2n − 2, twice for three
+    and more: it is the error of that one and covers that of u as long as the tableau
+    converges. Out of the
     asymptotic range (see `extrapolation.resolved`) it is the difference to u_{ds/n},
     and so it is for what is not extrapolated. What cells leave of a trigonometric
     interpolant is added, see `negative_cells` and `unresolved`.
@@ -62,13 +63,12 @@ def step_error(runs: Sequence[Solution]) -> float:
         np.abs(weighted(together, spread)[0]).sum() * runs[0].grid.cell_volume
         for together in zip(*(one.densities for one in runs), strict=True)
     ]
-    return float(max(sizes, default=0.0))
+    return safety(len(runs)) * float(max(sizes, default=0.0))
 
 
 def largest_cells_error(run: Solution) -> float:
     """Largest estimated L1 error that the cells leave in the saved densities."""
-    errors = cells_error(run.scheme["options"], run.densities, run.grid)
-    return float(errors.max(initial=0.0))
+    return float(cells_error(run).max(initial=0.0))
 
 
 def _densities(runs: Sequence[Solution], asymptotic: bool) -> tuple[Any, Array]:
@@ -82,7 +82,7 @@ def _densities(runs: Sequence[Solution], asymptotic: bool) -> tuple[Any, Array]:
     errors = np.empty(len(kept))
     for place in range(len(kept)):
         sums = weighted([one.densities[place] for one in runs], weights)
-        errors[place] = np.abs(sums[1]).sum() * volume
+        errors[place] = safety(len(runs)) * np.abs(sums[1]).sum() * volume
         if not lazy:
             kept[place] = sums[0]
     if lazy:

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from fpsolve._support.arrays import Array
+from fpsolve.density.solution import Solution
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 
 __all__ = ["cells_error", "unresolved"]
@@ -15,15 +16,21 @@ __all__ = ["cells_error", "unresolved"]
 _SHORTEST = 2
 
 
-def cells_error(options: dict[str, Any], densities: Any, grid: Any) -> Array:
+def cells_error(solution: Solution) -> Array:
     """The L1 errors that the cells leave in saved densities; shape (n_saved,).
 
-    Zero unless the translation is that of the trigonometric interpolant: of piecewise
-    interpolation the short waves say little.
+    What a density shows, and the square of what the start shows: noise damps its short
+    waves, but those beyond them, about as much smaller again, are taken for long ones
+    by the cells. Zero unless the translation is that of the trigonometric interpolant:
+    of piecewise interpolation the short waves say little.
     """
-    if options.get("translation") != "fourier":
+    densities, grid = solution.densities, solution.grid
+    if solution.scheme["options"].get("translation") != "fourier":
         return np.zeros(len(densities))
-    return np.array([unresolved(p, grid) for p in densities])
+    start: Any = solution.initial_density
+    first = unresolved(start, grid)
+    mass = float(start.sum()) * grid.cell_volume
+    return np.array([unresolved(p, grid) + first * (first / mass) for p in densities])
 
 
 def unresolved(p: Array, grid: PhaseSpaceGrid) -> float:
