@@ -82,8 +82,9 @@ def levelled_series(
     """Every series of runs with ds, ds/2, …, ds/n combined, and errors at every s.
 
     The error is the difference of the last two entries of the tableau, times `safety`,
-    which is that of the lower order and covers the higher; where steps are not `resolved`, and for
-    series that are not combined, the difference to the run with ds/n. Besides it holds
+    which is that of the lower order and covers the higher; where steps are not
+    `resolved`, and for series that are not combined, the difference to the run with
+    ds/n. Besides it holds
     the `rounding` of a series, relative to its largest value.
     """
     best, lower = tableau(len(runs))
