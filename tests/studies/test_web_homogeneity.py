@@ -138,7 +138,7 @@ def test_webs_of_smooth_fibres_vary_as_predicted():
     assert dataset.attrs["relaxation_length"] == 0.1
     z = dataset["z"].to_numpy()
     assert np.abs(z).max() < stdtrit(N_WEBS - 1, 1 - 0.005 / z.size)
-    # The basic prediction would have been missed: it is a sixth larger or smaller.
+    # The prediction of the basic model is missed by more than four errors.
     basic = fp.predict_web(
         fp.LayDownModel(UNIT, 3.0, fp.MovingBelt(0.3)), spacing=0.5,
         zones=dataset["zone"].to_numpy(), tolerance=0.05,
