@@ -68,7 +68,8 @@ def web_spectrum(
     Long waves end in Ŝ = k·C k, no fibre gets lost: C = 2 E ξ (−L)⁻¹ (ξ − E ξ), which
     is used up to |k| = 1e-3 of what it forgets over, so that tiny k lose no digits.
     On a belt at rest under an isotropic potential long waves split into sectors of the
-    angular index, which are small: they are solved down to A = 0.2.
+    angular index, which are small: up to |k| σ = 6 they are solved down to A = 0.2.
+    Other short waves are refused below A √σ = 0.7, where their errors do not cover.
 
     Of a smooth fibre the functions have a third factor, Hermite polynomials of κ, and
     Gaussians that leave the law its wider tails. Short waves see arcs instead of

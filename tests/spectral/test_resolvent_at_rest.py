@@ -85,6 +85,21 @@ def test_at_little_noise_periodograms_of_paths_agree():
         assert error < 0.1 * expected
 
 
+@pytest.mark.parametrize("size", [3.2, 4.0])
+def test_short_waves_at_rest_are_those_of_larger_sectors(size):
+    """Where products of polynomials agreed in a row on 0.373 in place of 0.480."""
+    model = fp.LayDownModel(QUADRATIC, 0.3)
+    spectrum = fp.web_spectrum(model, 0.6 * size, 0.8 * size, tolerance=1e-2)
+    (larger,) = AtRest(model, Basis(110, 40)).spectrum(np.array([size]))
+    assert abs(float(spectrum) - larger) <= float(spectrum.errors) + 1e-4 * larger
+
+
+def test_short_waves_of_little_noise_on_a_belt_are_refused():
+    model = fp.LayDownModel(QUADRATIC, 0.3, fp.MovingBelt(0.1))
+    with pytest.raises(ToleranceError, match="choose a larger noise or longer waves"):
+        fp.web_spectrum(model, 1.9, 2.6, tolerance=1e-2)
+
+
 def test_what_keeps_the_angular_index_is_told():
     assert is_round_at_rest(fp.LayDownModel(QUARTIC, 1.0))
     assert not is_round_at_rest(fp.LayDownModel(QUARTIC, 1.0, fp.MovingBelt(0.1)))
