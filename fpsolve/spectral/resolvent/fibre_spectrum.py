@@ -115,11 +115,11 @@ def _columns(
     distinct, inverse = np.unique(points, axis=0, return_inverse=True)
     values, errors = np.zeros((2, len(distinct), method.n_columns))
     sigma1, sigma2 = ladder.scales
-    long = np.hypot(distinct[:, 0] * sigma1, distinct[:, 1] * sigma2) <= (
-        LONG_AT_REST if is_round_at_rest(ladder.model) else LONG
-    )
+    by_sectors = method.n_columns == 1 and is_round_at_rest(ladder.model)
+    size = np.hypot(distinct[:, 0] * sigma1, distinct[:, 1] * sigma2)
+    long = size <= (LONG_AT_REST if by_sectors else LONG)
     others = np.flatnonzero(~long)
-    if method.n_columns == 1 and is_round_at_rest(ladder.model):
+    if by_sectors:
         known = waves_at_rest(ladder, distinct, long, tolerance)
     else:
         known = longest_waves(ladder, distinct, tolerance)

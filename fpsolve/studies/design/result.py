@@ -28,8 +28,10 @@ class WebDesign(Saved):
     ----------
     process : Process
         The optimal one.
-    spacing, titer : float
-        Distance of the spinning positions in metres, and mass of the fibre in g/m.
+    spacing : float
+        Distance of the spinning positions in metres.
+    titer : float
+        Mass of the fibre in g/m.
     positions : {"regular", "random"}
     cost : str
         What a bound of CV was met at the least of; says nothing where none was given.
