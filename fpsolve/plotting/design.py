@@ -17,8 +17,9 @@ if TYPE_CHECKING:
 
 __all__ = ["plot_web_design"]
 
-# Of ticks in a decade, and the ratio above which only powers of ten are told.
-_DIGITS, _RATIO = (1, 2, 5), 300.0
+# Of ticks in a decade, all of them on short axes, and the ratio above which only powers
+# of ten are told.
+_DIGITS, _ALL, _SHORT, _RATIO = (1, 2, 5), tuple(range(1, 10)), 8.0, 300.0
 # Of an axis that shows one number, and less than the whole of a bar.
 _ROOM, _BAR = 1.1, 0.8
 # What sensitivities are called: the titer has none.
@@ -29,7 +30,8 @@ def plot_web_design(design: WebDesign) -> Figure:
     """CV of zones against throughput, and ∂ log CV/∂ log θ at the optimum.
 
     Lines are the front, where there is one, else the way of the search; circles the
-    start, stars the optimum, bars what was laid there, and dotted the bounds of CV.
+    start, stars the optimum, squares with two standard errors what was laid there, and
+    dotted the bounds of CV.
 
     Parameters
     ----------
@@ -61,14 +63,15 @@ def _trade_off(axes: Axes, design: WebDesign) -> None:
             axes.errorbar(
                 design.throughput, 100 * design.simulated[n],
                 200 * design.standard_errors[n], color=COLOURS["black"], capsize=3,
-                linewidth=0.8,
+                linewidth=0.8, fmt="s", markersize=3, zorder=3,
             )  # fmt: skip
         if design.bounded:
             axes.axhline(100 * design.largest[n], color=colour, linestyle=":")
     _with_room(axes, [*rows, design.throughput, design.history_throughput[0]])
     axes.set(xlabel="throughput in kg/h per metre", ylabel="CV in %")
     for axis in (axes.xaxis, axes.yaxis):
-        plain_numbers(axis, _DIGITS, _RATIO)
+        low, high = axis.get_view_interval()
+        plain_numbers(axis, _ALL if high < _SHORT * low else _DIGITS, _RATIO)
     axes.legend(loc="best")
 
 
