@@ -15,6 +15,7 @@ from fpsolve.cli.check import check
 from fpsolve.cli.compare import compare
 from fpsolve.cli.design import design
 from fpsolve.cli.energy import energy
+from fpsolve.cli.identify import identify
 from fpsolve.cli.info import info
 from fpsolve.cli.limits import limits
 from fpsolve.cli.paths import paths
@@ -51,6 +52,7 @@ _COMMANDS: dict[Callable[..., None], str] = {
     web: "web --out results",
     predict: "predict --noise 2 --belt-speed 0.2 --spacing 0.5",
     design: "design --out results",
+    identify: "identify fibre.csv --belt-speed 0.1 --ds 1e-3",
     plot: "plot results/laydown.nc --movie",
     report: "report results/laydown.nc",
     rerun: "rerun results/laydown.nc --out again",

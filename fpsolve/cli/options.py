@@ -15,9 +15,13 @@ __all__ = [
     "CONFINING",
     "EXAMPLES",
     "EXPORTS",
+    "METHODS",
+    "MODELS",
+    "MOTIONS",
     "PARTS",
     "PHASES",
     "POSITIONS",
+    "UNITS",
     "Config",
     "Example",
     "KeepCheckpoint",
@@ -39,6 +43,11 @@ PARTS = ("relaxation", "evolution", "branches", "gap", "variance")
 POSITIONS = ("regular", "random")
 PHASES = ("independent", "in phase")
 EXPORTS = ("png", "tiff", "vtp", "csv")
+MODELS = ("smooth", "basic")
+METHODS = ("likelihood", "functional")
+MOTIONS = ("rotating", "oscillating")
+# Of lengths in a table, in metres.
+UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3}
 
 
 def proposing(*words: str) -> Callable[[str], list[str]]:

@@ -9,8 +9,13 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from fpsolve.cli.command import command_line
-from fpsolve.cli.console import print_pairs, print_table
+from fpsolve.cli.console import print_lines, print_pairs, print_table
 from fpsolve.cli.frame import command
+from fpsolve.cli.identified import (
+    From,
+    read_identification,
+    tables_of_identification,
+)
 from fpsolve.cli.options import POSITIONS, NoFigures, Out, proposing
 from fpsolve.cli.potentials import PARAMETERS, Kind, Noise, Parameters, with_parameters
 from fpsolve.cli.web import (
@@ -22,7 +27,9 @@ from fpsolve.cli.web import (
 )
 
 if TYPE_CHECKING:
+    from fpsolve._support.arrays import Array
     from fpsolve.cli.config.web import WebConfig
+    from fpsolve.studies.identification.identification import Identification
     from fpsolve.web.prediction import WebPrediction
 
 __all__ = ["predict"]
@@ -71,6 +78,7 @@ def predict(
     zone: Zone = None,
     band: Band = None,
     tolerance: Tolerance = 5e-3,
+    from_: From = None,
     potential: Kind = "quadratic",
     noise: Noise = 1.0,
     belt_speed: BeltSpeed = 0.1,
@@ -82,12 +90,12 @@ def predict(
 
     No fibre is laid. Prints the variation of square zones, MD/CD ratio and cloudiness
     with bounds of their errors, and writes them and a figure. Lengths are metres for a
-    process in SI units, else throwing ranges. Of a file sections [process] or
+    process in SI units and an identification, whose errors are carried to the
+    variation, else throwing ranges. Of a file sections [process] or
     [potential], [model] and [curve] count, and of [web] spacing, positions and zones.
     """
     with command(out, figures=not no_figures) as frame:
         from fpsolve.plotting.predicted_web import plot_predicted_web
-        from fpsolve.web.predict import predict_web
 
         made, options = parameters.make(potential), options_of_model(context)
         physics = {
@@ -95,19 +103,24 @@ def predict(
             "model": {"noise": noise, "relaxation_length": relaxation_length},
             "curve": {"kind": "moving_belt", "speed": belt_speed},
         }
-        chosen = _config(tables_of(config, physics, options))
+        identified = None
+        if from_ is not None:
+            identified = read_identification(from_, config, options)
+        chosen = _config(
+            tables_of(config, physics, options)
+            if identified is None
+            else tables_of_identification(identified)
+        )
         name = f"{chosen.output.name}-prediction"
         frame.claim(f"{name}.nc", f"{name}.png")
         asked: dict[str, Any] = {
             "spacing": chosen.web.spacing if spacing is None else spacing,
             "positions": chosen.web.positions if positions is None else positions,
-            "zones": zone or chosen.web.zones or _default_zones(chosen),
+            "zones": zone or chosen.web.zones or _default_zones(chosen, identified),
             "bands": [_pair(one) for one in band or ()],
             "tolerance": tolerance,
         }
-        model: Any = chosen.laid_model()
-        found = predict_web(model, **asked)
-        print_prediction(found, "" if chosen.process is None else " m")
+        found = _predicted(chosen, asked, identified)
         toml = chosen.to_toml()
         of_model = {
             "potential": made, "noise": noise, "belt_speed": belt_speed,
@@ -116,19 +129,54 @@ def predict(
         used = command_line(
             "predict", *([] if config is None else [str(config)]), spacing=spacing,
             positions=positions, zone=zone, band=band, tolerance=tolerance,
-            **(of_model if options else {}),
+            **(of_model if options else {}), **{"from": from_},
         )  # fmt: skip
         about = {**found.provenance, "configuration": toml, **used}
         frame.finish(replace(found, provenance=about), f"{name}.nc")
         frame.figure(plot_predicted_web, found, name=f"{name}.png")
 
 
-def print_prediction(found: WebPrediction, unit: str) -> None:
-    """Print variation, cloudiness and ratio with bounds of their errors."""
-    print_table(("zone", "CV"), [
+def _predicted(
+    chosen: WebConfig, asked: dict[str, Any], identified: Identification | None
+) -> WebPrediction:
+    """The prediction, printed; with slopes where errors of parameters go on to it."""
+    from fpsolve.studies.identification.carried import why_not_carried
+    from fpsolve.web.predict import predict_web
+
+    model: Any = chosen.laid_model()
+    if identified is None:
+        found = predict_web(model, **asked)
+        print_prediction(found, "" if chosen.process is None else " m")
+        return found
+    reason = why_not_carried(identified)
+    found = predict_web(model, **asked, gradients=reason is None)
+    carried = identified.cv_errors(found) if reason is None else None
+    print_prediction(found, " m", carried)
+    if reason is not None:
+        print_lines(f"Errors of the parameters are not carried on: {reason}.")
+    return found
+
+
+def print_prediction(
+    found: WebPrediction, unit: str, carried: Array | None = None
+) -> None:
+    """Print variation, cloudiness and ratio with bounds of their errors.
+
+    `carried` are standard errors of CV by those of identified parameters.
+    """
+    rows = [
         (f"{zone:g}{unit}", f"{_said(cv, error)} %")
         for zone, cv, error in zip(found.zones, found.cv, found.errors, strict=True)
-    ])  # fmt: skip
+    ]
+    headings: tuple[str, ...] = ("zone", "CV")
+    if carried is not None:
+        headings = (*headings, "of the parameters")
+        more = [f"± {100 * error:.2g} %" for error in carried]
+        print_table(
+            headings, [(*row, one) for row, one in zip(rows, more, strict=True)]
+        )
+    else:
+        print_table(headings, rows)
     if found.cloudiness.size:
         print_table(("wavelengths", "part of CV²"), [
             (f"{short:g} to {long:g}{unit}", f"{_said(part, error)} %")
@@ -152,12 +200,15 @@ def _config(tables: dict[str, Any]) -> WebConfig:
     return check_config(tables, "options", WebConfig)
 
 
-def _default_zones(chosen: WebConfig) -> list[float]:
+def _default_zones(chosen: WebConfig, identified: Identification | None) -> list[float]:
     from fpsolve.model.process import Process
 
     model = chosen.laid_model()
     if isinstance(model, Process):
         return [zone * max(model.sigma1, model.sigma2) for zone in _ZONES]
+    if identified is not None:
+        widest = max(identified.parameters[name] for name in ("sigma1", "sigma2"))
+        return [zone * float(f"{widest:.0e}") for zone in _ZONES]
     return list(_ZONES)
 
 

@@ -9,6 +9,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from fpsolve.cli.frame import Frame, command
+from fpsolve.cli.identified import (
+    From,
+    read_identification,
+    tables_of_identification,
+)
 from fpsolve.cli.options import (
     EXPORTS,
     PHASES,
@@ -114,6 +119,7 @@ def web(
     periodic: Periodic = False,
     zone: Zone = None,
     export: Export = None,
+    from_: From = None,
     potential: Kind = "quadratic",
     noise: Noise = 1.0,
     belt_speed: BeltSpeed = 0.1,
@@ -126,7 +132,8 @@ def web(
 
     Writes the web, the configuration used, figures, and what --export asks for; prints
     base weight, variation of square zones, and MD/CD ratio with standard errors.
-    Lengths are metres for a process in SI units, else throwing ranges.
+    Lengths are metres for a process in SI units and an identification, else throwing
+    ranges.
     """
     with command(out) as frame:
         given = {
@@ -141,7 +148,12 @@ def web(
             "model": {"noise": noise, "relaxation_length": relaxation_length},
             "curve": {"kind": "moving_belt", "speed": belt_speed},
         }
-        tables = tables_of(config, physics, options_of_model(context))
+        options = options_of_model(context)
+        if from_ is None:
+            tables = tables_of(config, physics, options)
+        else:
+            found = read_identification(from_, config, options)
+            tables = tables_of_identification(found)
         chosen = _chosen(tables, given, no_figures)
         seed_from = "from the configuration" if seed is None else "from `--seed`"
         if chosen.web.seed is None:

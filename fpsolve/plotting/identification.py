@@ -22,6 +22,8 @@ __all__ = ["plot_identified_fibres", "plot_increments"]
 
 # Length of the fibres that are drawn, in units of the larger σ, and points at most.
 LENGTH, MOST_POINTS = 100.0, 5000
+# Labels of fibres in metres are long.
+FEW_TICKS = 4
 _HINT = "it is what `identify` returns"
 
 
@@ -54,6 +56,7 @@ def plot_identified_fibres(
             axes.plot(*points.T, color=COLOURS["blue"], linewidth=THIN)
             axes.set(title=name, xlabel=r"$\eta_1$")
             axes.set_aspect("equal")
+            axes.locator_params(axis="x", nbins=FEW_TICKS)
             show_frame(axes)
         panels[0].set_ylabel(r"$\eta_2$")
     return figure
@@ -82,6 +85,7 @@ def plot_increments(identification: Identification, *others: Identification) -> 
         ):
             _draw_bands(axes, several, name)
             axes.set(xlabel="$h$", ylabel=rf"$\Gamma_{{{symbol}}}$", ylim=(0, None))
+            axes.locator_params(axis="x", nbins=FEW_TICKS)
         handles, labels = panels[0].get_legend_handles_labels()
         figure.legend(handles, labels, loc="outside lower center", ncols=3)
     return figure

@@ -66,8 +66,9 @@ def check_steps(pieces: tuple[Array, ...], ds: float, position_error: float) -> 
         raise ValueError(
             f"`ds` must be at least the distance of neighbouring points, got {ds:g} "
             f"and points {longest:.6g} apart: no fibre is shorter than its chord. Pass "
-            "the `position_error` of the points, or let `FibreCurve.from_points` find "
-            "the arclength of points that are not equally far apart."
+            "the `position_error` or the unit of the points, or let "
+            "`FibreCurve.from_points` find the arclength of points that are not "
+            "equally far apart."
         )
     mean = float(chords.mean())
     if not mean >= SHORTEST_CHORD * ds:

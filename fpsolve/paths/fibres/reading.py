@@ -81,9 +81,13 @@ def equal_step(s: Array, name: str) -> float:
 def read_csv(path: str | Path) -> Table:
     """Columns of a file, comma, semicolon, tab or space between them."""
     place = check_path("path", path)
+    try:
+        text = place.read_text("utf-8-sig")
+    except UnicodeDecodeError:
+        raise FileFormatError(place, "it is not text in UTF-8") from None
     lines = [
         line.replace(";", ",").replace("\t", ",")
-        for line in place.read_text("utf-8-sig").splitlines()
+        for line in text.splitlines()
         if line.strip() and not line.lstrip().startswith("#")
     ]
     lines = [line if "," in line else ",".join(line.split()) for line in lines]

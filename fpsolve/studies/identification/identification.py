@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -15,6 +15,9 @@ from fpsolve.evolution.saved import Saved
 from fpsolve.model.fibre import FibreModel
 from fpsolve.paths.fibres.fibre_curve import FibreCurve
 from fpsolve.studies.identification.layout import IDENTIFICATION
+
+if TYPE_CHECKING:
+    from fpsolve.web.prediction import WebPrediction
 
 __all__ = ["Identification"]
 
@@ -117,6 +120,30 @@ class Identification(Saved):
             factor = math.exp(min(z * errors[name] / value, 700.0))
             found[name] = (value / factor, value * factor)
         return found
+
+    def cv_errors(self, prediction: WebPrediction) -> Array:
+        """√(g Σ gᵀ): standard errors of predicted CV by the errors of the parameters.
+
+        g = ∂CV/∂(σ1, σ2, A) from `predict_web(identification.model, …,
+        gradients=True)`, Σ the covariance; see `carried.carried_errors`.
+
+        Parameters
+        ----------
+        prediction : WebPrediction
+
+        Returns
+        -------
+        ndarray, shape (n_zones,)
+
+        Raises
+        ------
+        ValueError
+            If the model is the smooth one, the prediction without gradients or of
+            another model, or a parameter not determined to 30 per cent.
+        """
+        from fpsolve.studies.identification.carried import carried_errors
+
+        return carried_errors(self, prediction)
 
     def __repr__(self) -> str:
         errors = self.standard_errors

@@ -129,6 +129,30 @@ PREDICT = [
     row("predict --belt-speed 10", "got 10", "strictly between -1 and 1"),
     row("predict --out notes.txt", "got `notes.txt`", "`--out` must be a folder"),
 ]
+IDENTIFY = [
+    row("identify none.csv --belt-speed 0.1", "got `none.csv`", "an existing table"),
+    row("identify folder --belt-speed 0.1", "got `folder`", "an existing table"),
+    row("identify notes.txt --belt-speed 0.1", "`notes.txt`", "columns must be"),
+    row("identify result.nc --belt-speed 0.1", "`result.nc`", "not text in UTF-8"),
+    row("identify run.toml --ds 1", "got none", "`--belt-speed` must be given"),
+    row("identify --belt-speed nan", "got nan", "must be finite"),
+    row("identify --belt-speed 10", "got 10", "strictly between -1 and 1"),
+    row("identify --ds 0", "got 0", "`ds` must be positive"),
+    row("identify --ds nan", "got nan", "`ds` must be positive"),
+    row("identify --ds 1e-4", "got 0.0001", "no fibre is shorter than its chord"),
+    row("identify --unit mm", "apart on average", "in another unit"),
+    row("identify --unit inch", "got 'inch'", "`--unit` must be one of"),
+    row("identify --position-error nan", "got nan", "must be non-negative"),
+    row("identify --nozzle square", "got 'square'", "`--nozzle` must be one of"),
+    row("identify --radius 1", "got 1", "must not be given without `--nozzle`"),
+    row("identify --out notes.txt", "got `notes.txt`", "`--out` must be a folder"),
+    row("web --from none.nc", "got `none.nc`", "`path` must exist to be read"),
+    row("web --from result.nc", "got `result.nc`", "must be an identification"),
+    row("web --from result.nc --noise 2", "`--noise` .*got `result.nc`", "that of the"),
+    row("predict --from notes.txt", "`notes.txt`", "it is not a netCDF-4 file"),
+    row("predict --from paths.nc", "got `paths.nc`", "must be an identification"),
+    row("predict run.toml --from paths.nc", "got `paths.nc`", "beside `--from`"),
+]
 CHECK = [
     row("check none.toml", "got `none.toml`", "must be an existing TOML file"),
     row("check run.toml --n-paths 5", "got 5", "at least 1000"),
@@ -228,6 +252,6 @@ COMPARE = [
 ]
 
 MISTAKES = [
-    *RUN, *PATHS, *WEB, *PREDICT, *CHECK, *RATE, *SPECTRUM, *ENERGY, *LIMITS, *PLOT,
-    *RESUME, *REPORT, *RERUN, *COMPARE,
+    *RUN, *PATHS, *WEB, *PREDICT, *IDENTIFY, *CHECK, *RATE, *SPECTRUM, *ENERGY,
+    *LIMITS, *PLOT, *RESUME, *REPORT, *RERUN, *COMPARE,
 ]  # fmt: skip

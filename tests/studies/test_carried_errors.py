@@ -1,0 +1,157 @@
+"""Errors of identified parameters in predicted webs: slopes against parameters."""
+
+from dataclasses import replace
+from itertools import product
+
+import numpy as np
+import pytest
+from known_identifications import known_identification
+from web_numbers import NUMBERS, choose_few_nodes, model_of
+
+import fpsolve as fp
+from fpsolve.web.prediction import WebPrediction
+
+NOISE, SPEED, SIGMA1, SIGMA2, SPACING = NUMBERS.tolist()
+PARAMETERS = {"sigma1": SIGMA1, "sigma2": SIGMA2, "noise": NOISE}
+FOUND = known_identification(model_of(NUMBERS))
+COVARIANCE = FOUND.covariance
+SPREAD = np.sqrt(np.diag(COVARIANCE))
+ZONES = [0.3, 4.0]
+
+
+def identified(covariance=COVARIANCE, **changes):
+    return replace(FOUND, covariance=covariance, **changes)
+
+
+def cv_of(sigma1, sigma2, noise):
+    """Of a web whose variation is known."""
+    return np.array(
+        [0.2 * noise**0.3 / np.sqrt(sigma1 * sigma2), 0.1 * np.exp(-noise) * sigma2]
+    )
+
+
+@pytest.fixture
+def web():
+    small, large = cv_of(*PARAMETERS.values())
+    slopes = np.array([
+        [0.3 * small / NOISE, -large], [0.0, 0.0], [-0.5 * small / SIGMA1, 0.0],
+        [-0.5 * small / SIGMA2, large / SIGMA2], [0.0, 0.0],
+    ])  # fmt: skip
+    none, two = np.zeros(0), np.zeros(2)
+    return WebPrediction(
+        model_of(NUMBERS), SPACING, 1.0, "random", np.array(ZONES),
+        np.array([small, large]), two, none, none, none, none, none, none, np.eye(2),
+        np.zeros((2, 2)), ("noise", "belt_speed", "sigma1", "sigma2", "spacing"),
+        slopes, np.zeros((5, 2)),
+    )  # fmt: skip
+
+
+def test_carried_errors_are_those_of_drawn_parameters(web):
+    drawn = np.random.default_rng(5).multivariate_normal(
+        list(PARAMETERS.values()), COVARIANCE, 20_000
+    )
+    spread = np.std(cv_of(*drawn.T), axis=1)
+    # The spread of 20000 numbers has an error of 1/√40000, three of which are 1.5 %;
+    # the second order over 0.08 of A, where CV goes with e^(-A), is 0.08².
+    np.testing.assert_allclose(identified().cv_errors(web), spread, rtol=0.022)
+
+
+def test_errors_of_the_slopes_make_carried_errors_larger(web):
+    wrong = 0.1 * np.abs(web.gradient)
+    sure, unsure = (
+        identified().cv_errors(one)
+        for one in (web, replace(web, gradient_errors=wrong))
+    )
+    # Each slope may be off by a tenth in either direction.
+    signs = np.array(list(product([-1, 1], repeat=5)))
+    worst = [
+        identified().cv_errors(replace(web, gradient=web.gradient + one * wrong))
+        for one in signs[:, :, None]
+    ]
+    assert (unsure >= np.max(worst, axis=0)).all()
+    assert (unsure <= 1.5 * sure).all()
+
+
+def predicted(values, tolerance=0.02, **options):
+    sigma1, sigma2, noise = values
+    return fp.predict_web(
+        model_of([noise, SPEED, sigma1, sigma2]), spacing=SPACING, zones=ZONES,
+        tolerance=tolerance, **options,
+    )  # fmt: skip
+
+
+@pytest.mark.nightly
+def test_carried_errors_are_half_the_spread_of_opposite_parameters():
+    """√Σ of ((CV(θ + L) − CV(θ − L))/2)² over the columns L of √Σ."""
+    values = np.array(list(PARAMETERS.values()))
+    halves = [
+        0.5 * (predicted(values + one).cv - predicted(values - one).cv)
+        for one in np.linalg.cholesky(COVARIANCE).T
+    ]
+    expected = np.sqrt(np.sum(np.square(halves), axis=0))
+    web = predicted(values, gradients=True)
+    carried = identified().cv_errors(web)
+    # Of third order over 4 per cent, a few times 0.04².
+    assert (carried >= 0.99 * expected).all()
+    # What was added for errors of the slopes holds what they are.
+    slack = SPREAD @ web.gradient_errors[[2, 3, 0]]
+    assert (carried - expected <= 2 * slack + 0.01 * expected).all()
+
+
+@pytest.mark.nightly
+def test_carried_errors_are_those_of_predictions_of_drawn_parameters(monkeypatch):
+    choose_few_nodes(monkeypatch)
+    values = list(PARAMETERS.values())
+    drawn = np.random.default_rng(7).multivariate_normal(values, COVARIANCE, 40)
+    # Between few nodes CV of large zones is not known well enough.
+    spread = np.std([predicted(one, 0.5).cv[0] for one in drawn], ddof=1)
+    carried = identified().cv_errors(predicted(values, 0.5, gradients=True))[0]
+    # The standard deviation of 40 Gaussian numbers has an error of 1/√78.
+    assert spread == pytest.approx(carried, rel=3 / np.sqrt(78))
+
+
+def test_carried_errors_are_proportional_to_those_of_the_parameters(web):
+    twice = identified(4 * COVARIANCE).cv_errors(web)
+    np.testing.assert_allclose(twice, 2 * identified().cv_errors(web), rtol=1e-12)
+
+
+def test_carried_errors_do_not_know_the_unit_of_length(web):
+    """σ in metres, A in m^-1/2 and a prediction of the process: the same."""
+    unit = 5e-3
+    factors = np.array([unit, unit, unit**-0.5])
+    values = dict(zip(PARAMETERS, factors * [*PARAMETERS.values()], strict=True))
+    covariance = factors[:, None] * COVARIANCE * factors
+    found = identified(covariance, parameters=values)
+    scale = np.array([unit**-0.5, 1.0, unit, unit, unit])[:, None]
+    metres = replace(
+        web, length=unit, gradient=web.gradient / scale,
+        gradient_errors=web.gradient_errors / scale,
+    )  # fmt: skip
+    expected = identified().cv_errors(web)
+    np.testing.assert_allclose(found.cv_errors(metres), expected, rtol=1e-12)
+
+
+SMOOTH = fp.SmoothLayDownModel(fp.QuadraticPotential(1.0), 0.5, 1.0, fp.MovingBelt(0.1))
+WIDE = np.diag([0.1, 0.5 * SIGMA2, 0.1]) ** 2
+
+
+@pytest.mark.parametrize(
+    ("found", "said"),
+    [
+        (identified(model=SMOOTH), "derivatives are known of the basic model only"),
+        (identified(undetermined={"sigma1": "it is long"}), "sigma1 is not determined"),
+        (identified(WIDE), "sigma2 has a standard error of 50 %"),
+        (identified(COVARIANCE * np.nan), "sigma1 has a standard error of nan %"),
+        (identified(parameters={**PARAMETERS, "noise": 3.0}), "of the identified"),
+    ],
+)
+def test_errors_that_cannot_be_carried_are_refused(web, found, said):
+    with pytest.raises(ValueError, match=said):
+        found.cv_errors(web)
+
+
+def test_a_prediction_that_has_no_slopes_is_refused(web):
+    with pytest.raises(ValueError, match="`prediction` must have gradients"):
+        identified().cv_errors(replace(web, gradient=None))
+    with pytest.raises(TypeError, match="`prediction` must be"):
+        identified().cv_errors(0.1)
