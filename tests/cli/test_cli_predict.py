@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from command_line import assert_mistake, files
+from web_numbers import choose_few_nodes
 
 import fpsolve as fp
 
@@ -33,11 +34,15 @@ def config(tmp_path):
     return path
 
 
-def test_a_prediction_is_that_of_the_library_in_metres(fpsolve, config, tmp_path):
+def test_a_prediction_is_that_of_the_library_in_metres(
+    fpsolve, config, tmp_path, monkeypatch
+):
+    # Of few nodes, whatever they miss: both have the same.
+    choose_few_nodes(monkeypatch)
     # The zone of the file is as large as its window allows, the one asked for larger.
     words = ("--zone", 0.01, "--zone", 0.03, "--band", "0.01:0.02")
     result = fpsolve(
-        "predict", config, *words, "--positions", "random", "--tolerance", 0.05,
+        "predict", config, *words, "--positions", "random", "--tolerance", 0.3,
         "--out", "out",
     )  # fmt: skip
     assert result.exit_code == 0, result.output
@@ -46,7 +51,7 @@ def test_a_prediction_is_that_of_the_library_in_metres(fpsolve, config, tmp_path
     process = fp.Process(0.005, 0.005, 30.0, 0.2, 50.0)
     expected = fp.predict_web(
         process, spacing=2e-3, zones=[0.01, 0.03], positions="random",
-        bands=[(0.01, 0.02)], tolerance=0.05,
+        bands=[(0.01, 0.02)], tolerance=0.3,
     )  # fmt: skip
     np.testing.assert_array_equal(found.cv, expected.cv)
     np.testing.assert_array_equal(found.cloudiness, expected.cloudiness)

@@ -14,6 +14,7 @@ import fpsolve as fp
 from fpsolve.cli import plan
 from fpsolve.cli.config import (
     EXAMPLES,
+    DesignConfig,
     PathsConfig,
     RunConfig,
     WebConfig,
@@ -169,7 +170,7 @@ def test_examples_build_and_survive_writing(name):
 def test_the_configurations_in_the_documentation_build():
     page = Path(__file__).parents[2] / "docs" / "command_line.md"
     blocks = re.findall(r"```toml\n(.*?)```", page.read_text("utf-8"), re.DOTALL)
-    run, smooth, process, paths, web = blocks
+    run, smooth, process, paths, web, design = blocks
     assert read_config(run).build().scheme.options["positive"]
     ends = "[potential]\nkind = 'quadratic'\n" + run[run.index("[run]") :]
     start = run[run.index("[initial]") : run.index("[scheme]")]
@@ -182,6 +183,7 @@ def test_the_configurations_in_the_documentation_build():
     laid = read_config(web, kind=WebConfig).build()
     assert laid.model.relaxation_length == 0.002
     assert laid.arguments["titer"] == 1.5e-4
+    assert read_config(design, kind=DesignConfig).build()
 
 
 def test_the_first_example_is_the_one_of_the_paper():

@@ -275,6 +275,7 @@ def test_arguments_that_cannot_work_are_named():
     refused("`grid` must have at least 6 cells in every", grid=few)
 
 
+@pytest.mark.nightly
 def test_a_box_or_a_grid_that_does_not_hold_the_density_is_refused():
     with pytest.raises(fp.DomainTooSmallError, match="enlarge `half_width`"):
         fp.periodic_state(SWINGING, fp.PhaseSpaceGrid(2.5, (20, 20, 12)), n_phases=4)

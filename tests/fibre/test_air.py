@@ -110,10 +110,10 @@ def test_motion_in_a_flow_is_of_order_two_in_the_step():
     air = AirFlow(lambda r, t: linear(r.T).T * (1 + math.sin(40 * t)))
 
     def after(n_steps):
-        return simulate(fibre, 0.025, n_steps, air=air)
+        return simulate(fibre, 0.0125, n_steps, air=air)
 
-    exact = simulate(fibre, 0.025, 800, air=air, estimate_error=False).r[-1]
-    motions = [after(n) for n in (50, 100, 200)]
+    exact = simulate(fibre, 0.0125, 416, air=air, estimate_error=False).r[-1]
+    motions = [after(n) for n in (26, 52, 104)]
     errors = [np.linalg.norm(one.r[-1] - exact, axis=1).max() for one in motions]
     assert (abs(orders(errors) - 2) < 0.25).all(), errors
     for motion, error in zip(motions, errors, strict=True):

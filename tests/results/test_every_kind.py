@@ -10,6 +10,7 @@ import pytest
 import result_files
 import xarray as xr
 from known_webs import KnownWeb
+from web_numbers import choose_few_nodes
 
 import fpsolve as fp
 from fpsolve import plotting, studies
@@ -189,8 +190,12 @@ MAKERS = {
 
 @pytest.fixture(scope="module", autouse=True)
 def known_webs():
-    """Designs of webs known in closed form, since predictions take seconds each."""
+    """Designs of webs known in closed form, since predictions take seconds each.
+
+    Those that are made are of few nodes: with fewer digits, which are stored as well.
+    """
     with pytest.MonkeyPatch.context() as patch:
+        choose_few_nodes(patch)
         patch.setattr(predictions, "predict_web", KnownWeb())
         yield
 

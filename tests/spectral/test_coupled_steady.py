@@ -84,6 +84,7 @@ def test_for_short_relaxation_the_belt_has_the_moments_of_the_basic_model():
     np.testing.assert_allclose(distances[:-1] / distances[1:], 2.0, rtol=0.15)
 
 
+@pytest.mark.nightly
 def test_units_of_length_scale_the_moments():
     """ξ = σξ', R = σR', κ = κ'/σ and A = A'/√σ."""
     sigma = 1e-2

@@ -33,6 +33,7 @@ def best():
         return optimal_noise(PLANE, relaxation_length=0.1, tolerance=1e-3)
 
 
+@pytest.mark.nightly
 def test_the_best_noise_of_a_smooth_fibre_is_a_double_eigenvalue(best):
     assert best.kind == "double eigenvalue"
     assert best.sectors == (Sector(1),)
@@ -40,12 +41,14 @@ def test_the_best_noise_of_a_smooth_fibre_is_a_double_eigenvalue(best):
     assert best.gap_error <= 1e-3 * best.gap
 
 
+@pytest.mark.nightly
 def test_its_errors_cover_finer_truncations(best):
     # Measured with the whole scan and the default tolerance, to 6e-7 and 3e-6.
     assert abs(best.noise - 1.60338212) <= best.noise_error + 6.3e-7
     assert abs(best.gap - 0.69743533) <= best.gap_error + 2.6e-6
 
 
+@pytest.mark.nightly
 def test_the_gap_of_a_smooth_fibre_is_smaller_on_both_sides(best):
     # All sectors are searched; the coarsest truncation is good to 1e-3.
     for noise in (best.noise - 0.05, best.noise + 0.05):

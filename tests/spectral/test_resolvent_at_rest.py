@@ -61,6 +61,7 @@ def test_at_little_noise_errors_cover_the_distance_to_smaller_tolerances(noise):
     assert (np.abs(coarse - fine) <= error + finer).all()
 
 
+@pytest.mark.nightly
 def test_at_little_noise_periodograms_of_paths_agree():
     """A = 0.3, which no truncation of 24 000 products resolves: 200 long fibres.
 

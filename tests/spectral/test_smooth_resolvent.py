@@ -161,6 +161,7 @@ def test_errors_cover_the_distance_to_larger_truncations():
     assert (fine > 0).all()
 
 
+@pytest.mark.nightly
 def test_periodograms_of_paths_agree_within_their_standard_errors():
     """Over S with k1 v S = 2πn the coherent line has no part in them."""
     k2, ds, steps = np.array([0.0, 1.0]), 1 / 16, 4000

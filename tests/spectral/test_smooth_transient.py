@@ -221,6 +221,7 @@ def test_a_turned_start_gives_turned_moments(at_rest):
     )
 
 
+@pytest.mark.nightly
 def test_exchanged_axes_give_exchanged_moments():
     law = GaussianLaw((0.3, -0.2), (0.7, 0.4), 0.8, 1.0)
     # A turn by −π/2 takes ξ₂ to ξ₁.
@@ -275,6 +276,7 @@ def test_a_sparse_exponential_is_that_of_the_matrix():
         np.testing.assert_allclose(found, expm(0.7 * full) @ x, rtol=0, atol=1e-9)
 
 
+@pytest.mark.nightly
 def test_without_damping_a_truncation_grows(monkeypatch):
     """What makes the last functions of a truncation grow is real, and is damped."""
     law = START

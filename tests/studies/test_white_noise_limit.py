@@ -83,6 +83,7 @@ def test_coupled_smooth_paths_have_the_law_of_sampled_ones():
         assert abs(few[name] - many[name]) < 4 * error + 0.01 * many[name], name
 
 
+@pytest.mark.nightly
 def test_gap_and_variance_are_of_order_one_and_two_after_their_derivatives():
     # σ = 1.2: nothing is hidden by σ = 1.
     potential = fp.QuadraticPotential(1.2, 1.2)

@@ -32,6 +32,7 @@ def few_nodes(monkeypatch):
     choose_few_nodes(monkeypatch)
 
 
+@pytest.mark.nightly
 def test_gradients_fulfil_the_law_of_dimensions(web):
     """CV does not know units: σ1 ∂1 + σ2 ∂2 + d ∂d + x ∂x − (A/2) ∂_A = 0.
 
@@ -102,6 +103,7 @@ def test_strips_of_a_slow_belt_change_as_those_of_a_gaussian():
     assert (away <= errors[others] + 1e-10).all()
 
 
+@pytest.mark.nightly
 def test_gradients_are_stored_and_files_without_them_read(web, tmp_path):
     web.save(tmp_path / "web.nc")
     back = fp.load(tmp_path / "web.nc")
@@ -118,6 +120,7 @@ def test_gradients_are_stored_and_files_without_them_read(web, tmp_path):
         from_xarray(wrong)
 
 
+@pytest.mark.nightly
 def test_a_page_shows_every_derivative_with_its_error(web, monkeypatch):
     monkeypatch.setattr(predicted_web, "drawings", lambda _: [])
     tables = [

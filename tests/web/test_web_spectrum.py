@@ -136,6 +136,7 @@ def test_errors_cover_where_noise_hides_the_strip(strength):
         assert np.median(errors) == pytest.approx(np.sqrt(0.36 / 4800), rel=0.1)
 
 
+@pytest.mark.nightly
 def test_noise_alone_is_seldom_called_a_strip():
     generator = np.random.default_rng(8)
     p_values = np.array([
