@@ -1,4 +1,4 @@
-"""Which parameters the curve does not determine, and why."""
+"""Which parameters the curve does not determine, or not as its errors say, and why."""
 
 from __future__ import annotations
 
@@ -7,13 +7,24 @@ import math
 import numpy as np
 
 from fpsolve._support.arrays import Array
+from fpsolve.paths.fibres.fibre_curve import FibreCurve
 
-__all__ = ["check_confined", "loose_noise", "loose_strengths"]
+__all__ = [
+    "check_confined",
+    "chord_bias",
+    "coarse_points",
+    "loose_noise",
+    "loose_strengths",
+]
 
 # 1/σ² within so many standard errors of zero is no confinement.
 _DEVIATIONS = 2.0
 # Relative standard error beyond which a parameter is known to a factor only.
 _LOOSE = 0.5
+# A and K err relatively by less than this times (κ_rms Δs)², since chords are no mean
+# angles; said where that is more than so many standard errors. Measured at A = 10:
+# docs/identification_likelihood.md.
+_CHORD_BIAS, _SHARE_OF_ERROR = 0.03, 0.5
 
 
 def check_confined(strength: Array, errors: Array, length: float) -> None:
@@ -75,3 +86,41 @@ def loose_noise(
         for name, error in errors.items()
         if not error < _LOOSE
     }
+
+
+def coarse_points(curve: FibreCurve, covariance: Array) -> tuple[str, ...]:
+    """A note where the distance of the points costs more than the errors say.
+
+    Parameters
+    ----------
+    curve : FibreCurve
+    covariance : ndarray
+        Of (1/σ1², 1/σ2², ln A) or (1/σ1², 1/σ2², ln A, ln R).
+    """
+    square, bias = chord_bias(curve)
+    variances = {"noise": covariance[2, 2]}
+    if len(covariance) == 4:
+        of_both = np.array([1.0, -1.0])
+        variances["curvature_noise"] = of_both @ covariance[2:, 2:] @ of_both
+    # Nothing is said of an infinite variance.
+    names = [
+        name
+        for name, variance in variances.items()
+        if bias > _SHARE_OF_ERROR * math.sqrt(max(0.0, variance))
+    ]
+    if not names:
+        return ()
+    return (
+        f"the fibre turns by κ_rms Δs = {math.sqrt(square):.2g} from chord to chord, "
+        f"which may change {' and '.join(names)} by up to {100 * bias:.2g} %, and is "
+        "not in the standard errors; take points closer together than "
+        f"{curve.ds:.3g}",
+    )
+
+
+def chord_bias(curve: FibreCurve) -> tuple[float, float]:
+    """(κ_rms Δs)² of the fibre, and by what share A and K may err for it."""
+    # Errors of points turn chords by a variance of 6 (error/Δs)², which is known.
+    scattered = 6 * (curve.position_error / curve.ds) ** 2
+    square = max(0.0, curve.check_turns() ** 2 - scattered)
+    return square, _CHORD_BIAS * square

@@ -10,7 +10,11 @@ from fpsolve._support.arrays import Array
 from fpsolve.model.curves.belts import FixedBelt
 from fpsolve.paths.fibres.fibre_curve import FibreCurve
 from fpsolve.studies.identification.coordinates import covariance_of, model_at, named
-from fpsolve.studies.identification.determined import check_confined, loose_strengths
+from fpsolve.studies.identification.determined import (
+    check_confined,
+    coarse_points,
+    loose_strengths,
+)
 from fpsolve.studies.identification.estimate import Estimate
 from fpsolve.studies.identification.maximum import Maximum
 
@@ -48,6 +52,7 @@ def estimate_of(
         model=model_at(found.at, curve.curve or FixedBelt()),
         log_likelihood=found.value,
         history=np.array([list(named(at).values()) for at in found.history]),
+        notes=coarse_points(curve, covariance),
         undetermined={
             **loose_strengths(strength, errors, curve.length),
             **undetermined,

@@ -27,7 +27,8 @@ def estimate_basic(curve: FibreCurve) -> Estimate:
 
     The covariance is the inverse curvature of the likelihood in (1/σ1², 1/σ2², ln A),
     and does not contain the bias of points that are far apart, O(Δs²): of A 0.3 % at
-    Δs = 0.2 σ and A = 1/√σ.
+    Δs = 0.2 σ and A = 1/√σ. Where turns from chord to chord cost more than half a
+    standard error of A or K, `notes` say so.
 
     Parameters
     ----------
