@@ -174,9 +174,13 @@ def mean_overlaps(eta: np.ndarray, side: float, speed: float) -> np.ndarray:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--quick", action="store_true", help="one model, fewer paths")
-    quick = parser.parse_args().quick
+    parser.add_argument("--cases", type=int, nargs="+", help="some of the full ones")
+    options = parser.parse_args()
+    quick = options.quick
     report = Report("web_prediction", quick)
     cases = QUICK if quick else FULL
+    if options.cases:
+        cases = [FULL[number] for number in options.cases]
     check_coverage(report, cases)
     for case in cases:
         model = belt(*case)
