@@ -31,6 +31,10 @@ def test_points_too_far_apart_for_the_errors_of_the_noise_are_noted():
     assert f"turns by κ_rms Δs = {math.sqrt(square):.2g}" in note
     assert f"may change noise by up to {100 * bias:.2g} %" in note
     assert "take points closer together than 0.06" in note
+    # The interval holds it: ln A is known to the root of both squares.
+    estimate = estimate_basic(coarse)
+    error = math.sqrt(estimate.covariance[2, 2]) / estimate.parameters["noise"]
+    assert error == pytest.approx(math.hypot(bias, 1 / math.sqrt(2 * 4000)), rel=0.05)
     # Half of it.
     assert chord_bias(fine)[1] / bias == pytest.approx(0.5, rel=0.1)
 

@@ -15,6 +15,7 @@ __all__ = [
     "coarse_points",
     "loose_noise",
     "loose_strengths",
+    "with_chord_bias",
 ]
 
 # 1/σ² within so many standard errors of zero is no confinement.
@@ -112,10 +113,17 @@ def coarse_points(curve: FibreCurve, covariance: Array) -> tuple[str, ...]:
         return ()
     return (
         f"the fibre turns by κ_rms Δs = {math.sqrt(square):.2g} from chord to chord, "
-        f"which may change {' and '.join(names)} by up to {100 * bias:.2g} %, and is "
-        "not in the standard errors; take points closer together than "
+        f"which may change {' and '.join(names)} by up to {100 * bias:.2g} %: the "
+        "standard errors are that much larger; take points closer together than "
         f"{curve.ds:.3g}",
     )
+
+
+def with_chord_bias(curve: FibreCurve, covariance: Array) -> Array:
+    """The covariance with the square of what ln A, and with it ln K, may err by."""
+    widened = covariance.copy()
+    widened[2, 2] += chord_bias(curve)[1] ** 2
+    return widened
 
 
 def chord_bias(curve: FibreCurve) -> tuple[float, float]:

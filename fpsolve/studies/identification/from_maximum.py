@@ -14,6 +14,7 @@ from fpsolve.studies.identification.determined import (
     check_confined,
     coarse_points,
     loose_strengths,
+    with_chord_bias,
 )
 from fpsolve.studies.identification.estimate import Estimate
 from fpsolve.studies.identification.maximum import Maximum
@@ -46,13 +47,16 @@ def estimate_of(
     """
     strength, errors = found.at[:2], np.sqrt(np.diagonal(covariance))[:2]
     check_confined(strength, errors, curve.length)
+    notes = coarse_points(curve, covariance)
+    if notes:
+        covariance = with_chord_bias(curve, covariance)
     return Estimate(
         parameters=named(found.at),
         covariance=covariance_of(found.at, covariance),
         model=model_at(found.at, curve.curve or FixedBelt()),
         log_likelihood=found.value,
         history=np.array([list(named(at).values()) for at in found.history]),
-        notes=coarse_points(curve, covariance),
+        notes=notes,
         undetermined={
             **loose_strengths(strength, errors, curve.length),
             **undetermined,
