@@ -148,7 +148,11 @@ def by_degree(operator: Any, right: Any, basis: SmoothBasis) -> Complex:
     solution = precondition(inner)
     defect = np.linalg.norm(operator @ solution - right) / np.linalg.norm(right)
     if not defect <= FAILED:
-        raise ToleranceError(float(defect), FAILED, "raise `tolerance`")
+        raise ToleranceError(
+            float(defect), FAILED,
+            "of the equation for a short wave, whatever is asked of its spectrum: "
+            "raise the noise, for the fibre keeps its direction over too long a way",
+        )  # fmt: skip
     return np.asarray(solution)
 
 
