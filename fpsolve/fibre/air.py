@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -184,13 +185,13 @@ class _Table:
             )
         return cls((axes[0], axes[1], axes[2]), velocities)
 
-    def __post_init__(self) -> None:
-        made = RegularGridInterpolator(self.axes, self.velocities, bounds_error=False)
-        object.__setattr__(self, "_interpolated", made)
+    @cached_property
+    def _interpolated(self) -> RegularGridInterpolator:
+        return RegularGridInterpolator(self.axes, self.velocities, bounds_error=False)
 
     def __call__(self, r: Array, t: float) -> Array:
         """Velocities at positions; NaN nowhere, or a FlowRangeError."""
-        found = np.asarray(self._interpolated(r))  # type: ignore[attr-defined]
+        found = np.asarray(self._interpolated(r))
         outside = ~np.isfinite(found).all(axis=1)
         if outside.any():
             raise FlowRangeError(t, tuple(r[outside.argmax()].tolist()))

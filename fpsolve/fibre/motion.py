@@ -176,6 +176,7 @@ def _motion(step: ThetaStep, r: Array, v: Array, n_steps: int, every: int) -> Mo
     t: Array = np.arange(n_steps + 1.0) * step.dt
     series = np.zeros((5, n_steps + 1))
     saves = sorted({*range(0, n_steps + 1, every), n_steps})
+    saving = frozenset(saves)
     kept = []
     tension, iterations = np.zeros(string.n_edges), 0
     for number in range(n_steps + 1):
@@ -188,7 +189,7 @@ def _motion(step: ThetaStep, r: Array, v: Array, n_steps: int, every: int) -> Mo
             np.abs(forces.stretched(r)).max() / string.edge,
             iterations,
         )
-        if number in saves:
+        if number in saving:
             kept.append((r, v))
     positions, velocities = (np.array(one) for one in zip(*kept, strict=True))
     kinetic, potential, largest, stretched, counted = series

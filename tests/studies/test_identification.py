@@ -98,6 +98,18 @@ def test_an_interval_is_that_of_a_gaussian_logarithm():
     assert np.sqrt(low * high) == pytest.approx(value, rel=1e-12)
 
 
+def test_an_interval_by_likelihood_is_the_one_whose_coverage_was_measured():
+    result = replace(found("smooth", "smooth"), method="likelihood")
+    value, error = result.parameters["sigma1"], result.standard_errors["sigma1"]
+    low, high = result.interval(0.95)["sigma1"]
+    # ± z errors of 1/σ², which is 2 error/σ³ to first order.
+    z = 1.959963984540054 * 2 * error / value**3
+    assert [low**-2, high**-2] == pytest.approx([value**-2 + z, value**-2 - z])
+    # By the functional it is that of the logarithm.
+    plain = found("smooth", "smooth").interval(0.95)["sigma1"]
+    assert np.sqrt(np.prod(plain)) == pytest.approx(value)
+
+
 SHORT = fibre("smooth").eta[:200]
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -22,11 +23,12 @@ if TYPE_CHECKING:
 __all__ = ["Sources"]
 
 
-class Sources:
+class Sources(ABC):
     """What makes a fibre curve of which its class takes points, ds and options."""
 
+    @abstractmethod
     def __init__(self, eta: Any, ds: Any, curve: Any = None, **options: Any) -> None:
-        raise NotImplementedError
+        """A fibre of points at equal arclength."""
 
     @classmethod
     def from_points(

@@ -18,7 +18,14 @@ from fpsolve.model.potentials.quadratic import QuadraticPotential
 from fpsolve.model.smooth import SmoothLayDownModel
 from fpsolve.studies.identification.chord_law import Parameters
 
-__all__ = ["covariance_of", "interval", "model_at", "named", "parameters_at"]
+__all__ = [
+    "covariance_of",
+    "interval",
+    "logarithmic_interval",
+    "model_at",
+    "named",
+    "parameters_at",
+]
 
 NAMES = ("sigma1", "sigma2", "noise", "curvature_noise")
 
@@ -84,10 +91,19 @@ def interval(
     deviations : float
         1.96 for 95 %.
     """
-    share = deviations * error / value
     if not name.startswith("sigma"):
-        return value * math.exp(-share), value * math.exp(share)
+        return logarithmic_interval(value, error, deviations)
+    share = deviations * error / value
     wide = 1 - 2 * share
-    return value / math.sqrt(1 + 2 * share), value / math.sqrt(
-        wide
-    ) if wide > 0 else math.inf
+    return (
+        value / math.sqrt(1 + 2 * share),
+        value / math.sqrt(wide) if wide > 0 else math.inf,
+    )
+
+
+def logarithmic_interval(
+    value: float, error: float, deviations: float
+) -> tuple[float, float]:
+    """P exp(±z δP/P); of an error many times the parameter anything positive."""
+    factor = math.exp(min(deviations * error / value, 700.0))
+    return value / factor, value * factor

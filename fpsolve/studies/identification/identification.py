@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -14,6 +13,8 @@ from fpsolve.evolution.call import Call
 from fpsolve.evolution.saved import Saved
 from fpsolve.model.fibre import FibreModel
 from fpsolve.paths.fibres.fibre_curve import FibreCurve
+from fpsolve.studies.identification.coordinates import interval as even_interval
+from fpsolve.studies.identification.coordinates import logarithmic_interval
 from fpsolve.studies.identification.layout import IDENTIFICATION
 
 if TYPE_CHECKING:
@@ -94,9 +95,10 @@ class Identification(Saved):
         return 2.0 * len(self.parameters) - 2.0 * self.log_likelihood
 
     def interval(self, level: float = 0.95) -> dict[str, tuple[float, float]]:
-        """P exp(±z δP/P): intervals that hold a true parameter with that probability.
+        """Intervals that hold a true parameter with that probability.
 
-        Logarithms of positive parameters are closer to Gaussian than themselves.
+        By likelihood ± z errors in 1/σ² for throwing ranges, in which it is even, and
+        in logarithms for noises; by the functional in logarithms, P exp(±z δP/P).
 
         Parameters
         ----------
@@ -114,12 +116,15 @@ class Identification(Saved):
         if not 0 < level < 1:
             raise ValueError(f"`level` must lie between 0 and 1, got {level:g}.")
         z, errors = float(ndtri(0.5 + 0.5 * level)), self.standard_errors
-        found = {}
-        for name, value in self.parameters.items():
-            # An error many times the parameter: anything positive.
-            factor = math.exp(min(z * errors[name] / value, 700.0))
-            found[name] = (value / factor, value * factor)
-        return found
+        if self.method == "likelihood":
+            return {
+                name: even_interval(name, value, errors[name], z)
+                for name, value in self.parameters.items()
+            }
+        return {
+            name: logarithmic_interval(value, errors[name], z)
+            for name, value in self.parameters.items()
+        }
 
     def cv_errors(self, prediction: WebPrediction) -> Array:
         """√(g Σ gᵀ): standard errors of predicted CV by the errors of the parameters.
