@@ -143,6 +143,7 @@ AT_REST = CONFIG.replace('kind = "moving_belt"\nspeed = 0.1', 'kind = "fixed_bel
 AT_REST = AT_REST.replace("noise = 1.0", "noise = 4.0")
 
 
+@pytest.mark.nightly
 def test_a_spectrum_from_the_file_of_a_run_is_that_of_its_model(fpsolve, tmp_path):
     path = tmp_path / "case.toml"
     path.write_text(AT_REST, encoding="utf-8")

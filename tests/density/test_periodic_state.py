@@ -195,6 +195,7 @@ def test_phases_are_of_order_six_in_the_step_and_two_with_a_single_one():
     np.testing.assert_allclose(single.orders, 2.0, atol=0.3)
 
 
+@pytest.mark.nightly
 def test_a_smooth_fibre_has_a_periodic_density_too():
     curve = fp.OscillatingNozzle(0.1, 0.5, 1.0)
     model = fp.SmoothLayDownModel(QUADRATIC, 0.3, 2.0, curve)

@@ -22,7 +22,9 @@ def functions(sector, truncation=SMALL, dual=False):
     return [values(row, sector, truncation, GRID) for row in np.eye(size)]
 
 
-@pytest.mark.parametrize("sector", [EVEN, ODD, ONE])
+@pytest.mark.parametrize(
+    "sector", [EVEN, ODD, pytest.param(ONE, marks=pytest.mark.nightly)]
+)
 def test_the_matrix_is_the_generator_by_quadrature_of_its_definition(sector):
     matrix = BASIS.matrix(sector, *SMALL).toarray()
     observables, densities = functions(sector), functions(sector, dual=True)

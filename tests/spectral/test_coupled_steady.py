@@ -67,6 +67,7 @@ def test_the_identities_of_the_stationary_state_hold(model):
     assert moments["mean_xi2"] == moments["covariance"] == 0.0
 
 
+@pytest.mark.nightly
 def test_for_short_relaxation_the_belt_has_the_moments_of_the_basic_model():
     """The distance is of first order in R, observed at every halving."""
     sigmas, names = (0.9, 1.2), ("mean_xi1", "variance_xi1", "variance_xi2")
@@ -110,6 +111,7 @@ def test_paths_have_these_moments():
         assert abs(found.moments[name] - mean) <= 4 * error, name
 
 
+@pytest.mark.nightly
 def test_the_density_solves_the_forward_equation():
     """L* p = 0 by Fourier differentiation on a grid, which knows no basis."""
     grid = fp.SmoothPhaseSpaceGrid((9.0, 9.0), 13.5, (36, 36, 16, 36))
@@ -144,7 +146,8 @@ def test_the_density_solves_the_forward_equation():
         (BELT, {"memory_limit": 1e6}, ToleranceError, "memory_limit"),
         # Too little noise: no truncation that fits in 100 MB holds the orbits.
         (fibre(0.3, 0.3, 0.2), {"memory_limit": 1e8}, ToleranceError, "more noise"),
-        (fibre(0.3, 1.5, 0.95), {}, ToleranceError, "slower belt"),
+        pytest.param(fibre(0.3, 1.5, 0.95), {}, ToleranceError, "slower belt",
+                     marks=pytest.mark.nightly),
     ],
 )  # fmt: skip
 def test_what_cannot_be_known_is_refused(model, options, error, message):

@@ -53,6 +53,7 @@ def test_the_gap_is_smaller_on_both_sides(best):
         assert loss[1] / loss[0] == pytest.approx(4**power, rel=0.05)
 
 
+@pytest.mark.nightly
 def test_the_best_noise_scales_with_the_throwing_range(best):
     sigma = 2.5
     found = optimal_noise(fp.QuadraticPotential(sigma, sigma))

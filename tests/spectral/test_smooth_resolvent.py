@@ -96,6 +96,7 @@ def test_both_forms_agree_where_both_converge(narrow, k):
     assert short == pytest.approx(long, rel=4e-3)
 
 
+@pytest.mark.nightly
 def test_the_basic_spectrum_is_approached_at_first_order():
     """Ŝ_R − Ŝ_0 = c R + O(R²), at every halving of R."""
     basic = fp.LayDownModel(ISOTROPIC, 2.0, fp.MovingBelt(V))

@@ -137,6 +137,7 @@ def test_the_gap_tends_to_that_of_the_basic_model_as_first_order_theory_says():
     assert 2 * slopes[1] - slopes[0] == pytest.approx(0.0127984857, rel=1e-3)
 
 
+@pytest.mark.nightly
 def test_the_gap_covers_a_finer_one_and_scales_with_the_throwing_range():
     model = smooth(0.1, 2.0)
     rough, fine = (fp.spectral_gap(model, tolerance=one) for one in (1e-3, 1e-8))

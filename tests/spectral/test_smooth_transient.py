@@ -191,6 +191,7 @@ def test_what_is_stationary_is_reached():
         assert abs(found.series[name][-1] - exact) <= found.errors[name][-1] + 2e-6
 
 
+@pytest.mark.nightly
 def test_on_a_belt_the_mean_tangent_turns_back():
     """E cos α → −v and E sin α → 0, exactly; e^{−gap s} is 1e-3 at s = 30."""
     model = fp.SmoothLayDownModel(ROUND, 0.1, 1.0, fp.MovingBelt(0.3))

@@ -165,6 +165,7 @@ def test_means_of_all_fibres_are_pooled():
     np.testing.assert_allclose(many.pooled().xi[:, 0], np.arange(5) * 2 + 0.5)
 
 
+@pytest.mark.nightly
 def test_by_likelihood_the_true_model_has_the_smaller_aic():
     data = fibre("smooth")
     smooth, basic = (fp.identify(data, model=name) for name in ("smooth", "basic"))

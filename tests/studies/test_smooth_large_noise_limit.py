@@ -51,6 +51,7 @@ def test_the_spread_is_that_of_the_limit_and_not_of_the_basic_model(dataset):
     assert (one.distance.to_numpy() < 3 * np.array(NOISES) ** -4).all()
 
 
+@pytest.mark.nightly
 def test_on_a_belt_the_stationary_density_is_near_the_limit_and_leans_exactly():
     found = studies.large_noise_limit(
         UNIT, [1.8], bending=0.2, parts=["stationary"], quick=True, workers=0

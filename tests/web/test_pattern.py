@@ -55,6 +55,7 @@ def test_the_mean_is_the_length_laid_per_area(rotating):
     assert pattern.length_density.min() > -0.01 * pattern.mean
 
 
+@pytest.mark.nightly
 def test_small_curvature_gives_the_bessel_formula_and_the_lag_of_the_fibre():
     v, radius = 0.1, 1.0
     for turn, low, high in ((0.1, 0.0, 0.012), (0.2, 0.03, 0.06)):

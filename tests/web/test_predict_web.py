@@ -128,6 +128,7 @@ def test_small_zones_see_straight_fibres(prediction):
     )
 
 
+@pytest.mark.nightly
 def test_cv_goes_with_the_root_of_the_spacing():
     """Exactly, but for the strips, which fine spacing has not."""
     options = {"zones": [0.5, 2.0], "tolerance": 0.05}
