@@ -46,6 +46,7 @@ SCRIPTS = (
     "performance/webs.py",
     "performance/levels.py",
     "performance/shifts.py",
+    "performance/string_motion.py",
 )
 # For every night: kills by the dozen, times that a shared machine only blurs, and
 # claims that tests hold as well, on other models, shorter arclengths or fewer paths.
@@ -80,6 +81,7 @@ NIGHTLY = {
     "performance/webs.py": "",
     "performance/levels.py": "",
     "performance/shifts.py": "",
+    "performance/string_motion.py": "",
 }
 
 

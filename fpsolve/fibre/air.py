@@ -10,10 +10,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from scipy.interpolate import RegularGridInterpolator
 
+from fpsolve._kernels.drag import Drag, drag_slopes
 from fpsolve._support.arrays import Array
 from fpsolve._support.checks import check_positive, keep_checked, shown
 from fpsolve.errors import FlowRangeError
-from fpsolve.fibre.drag import MOST_SLENDERNESS, check_slenderness, drag_resistances
+from fpsolve.fibre.drag import (
+    MOST_SLENDERNESS,
+    check_slenderness,
+    resistance_table,
+)
 from fpsolve.fibre.ends import Vector, as_vector
 
 if TYPE_CHECKING:
@@ -25,10 +30,6 @@ Field = Callable[[Array, float], Array]
 # Names of coordinates and velocities in a table of a flow, and their units.
 AXES, VELOCITIES = ("x", "y", "z"), ("velocity_x", "velocity_y", "velocity_z")
 METRES, METRES_PER_SECOND = {"", "m"}, {"", "m/s", "m s-1", "m s^-1"}
-# Relative change of a Reynolds number for the slope of a resistance.
-CHANGE = 1e-6
-# Squares of speeds are divided by, of air at rest too.
-SMALLEST = 1e-300
 
 
 @dataclass(frozen=True)
@@ -128,25 +129,20 @@ class AirFlow:
         slope : ndarray, shape (n, 3, 3)
             ∂f/∂v, symmetric and positive definite.
         """
-        along = np.einsum("ij,ij->i", velocity, tangent)[:, None] * tangent
-        across = velocity - along
-        square = np.einsum("ij,ij->i", across, across)
-        w = diameter / self.viscosity * np.sqrt(square)
-        changed = w + CHANGE * np.maximum(w, 1e-3)
-        both = drag_resistances(np.stack([w, changed]), slenderness=self.slenderness)
-        (normal, risen), (tangential, followed) = both
-        force = normal[:, None] * across + tangential[:, None] * along
-        outer = tangent[:, :, None] * tangent[:, None, :]
-        slope = normal[:, None, None] * (np.eye(3) - outer)
-        slope += tangential[:, None, None] * outer
-        # Resistances grow with the speed across: ∂w/∂v = w v_n/|v_n|².
-        grown = (risen - normal)[:, None] * across + (followed - tangential)[
-            :, None
-        ] * along
-        steeper = w / ((changed - w) * np.maximum(square, SMALLEST))
-        slope += (steeper[:, None] * grown)[:, :, None] * across[:, None, :]
-        scale = self.density * self.viscosity
-        return scale * force, scale * slope
+        force, slope = np.empty(velocity.shape), np.empty((*velocity.shape, 3))
+        drag_slopes(
+            self.drag(diameter), np.ascontiguousarray(velocity),
+            np.ascontiguousarray(tangent), force, slope,
+        )  # fmt: skip
+        return force, slope
+
+    def drag(self, diameter: float) -> Drag:
+        """Numbers of the drag on a fibre of this diameter in m, for kernels."""
+        return Drag(
+            *resistance_table(self.slenderness),
+            diameter / self.viscosity,
+            self.density * self.viscosity,
+        )
 
 
 @dataclass(frozen=True, eq=False)

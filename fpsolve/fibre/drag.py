@@ -8,6 +8,13 @@ from functools import cache
 import numpy as np
 from numpy.typing import ArrayLike
 
+from fpsolve._kernels.drag import (
+    CREEPING,
+    FAST,
+    OSEEN,
+    many_resistances,
+    oseen,
+)
 from fpsolve._support.arrays import Array, check_finite_numbers
 from fpsolve._support.checks import check_positive, shown
 
@@ -18,11 +25,6 @@ __all__ = [
     "drag_resistances",
 ]
 
-# Reynolds numbers up to which Oseen's expansion holds, and from which the boundary
-# layer decides.
-CREEPING, FAST = 0.1, 100.0
-# ½ − γ + ln 8, as [MW11]_ gives it.
-OSEEN = 2.0022
 # Below this slenderness Stokes's resistances are lower than Oseen's at `CREEPING`, and
 # are joined to them by rising cubics.
 MOST_SLENDERNESS = 3.5e-2
@@ -68,7 +70,7 @@ def drag_coefficients(w: ArrayLike) -> tuple[Array, Array]:
             f"`w` must be positive, got {w.min():g}; the coefficients are infinite at "
             "0, where `drag_resistances` are finite."
         )
-    normal, tangential = _resistances(w)
+    normal, tangential = _resistances(w, 0.0)
     return normal / w, tangential / w
 
 
@@ -116,17 +118,7 @@ def drag_resistances(
             "velocity across the fibre times d/ν."
         )
     slenderness = check_slenderness("slenderness", slenderness)
-    joined = _joint(slenderness)
-    normal, tangential = _resistances(np.maximum(w, joined))
-    ends, starts, slopes = _at_joint(slenderness)
-    slow = w < joined
-    x = w[slow] / joined
-    for values, end, start, slope in zip(
-        (normal, tangential), ends, starts, slopes, strict=True
-    ):
-        rise, last = end - start, slope * joined
-        values[slow] = start + x**2 * (3 * rise - last + x * (last - 2 * rise))
-    return normal, tangential
+    return _resistances(w, slenderness)
 
 
 def drag_force(
@@ -204,26 +196,19 @@ def check_slenderness(name: str, value: object) -> float:
     return slenderness
 
 
-def _resistances(w: Array) -> tuple[Array, Array]:
-    """(w c_n, w c_τ) for w > 0."""
-    ranges = [w < CREEPING, w > FAST]
-    slow = np.where(ranges[0], w, CREEPING)
-    logarithm = np.log(np.clip(w, CREEPING, FAST))
-    found = []
-    for axis, polynomial in enumerate(_matched()):
-        between = w * np.exp(np.polynomial.polynomial.polyval(logarithm, polynomial))
-        fast = 2 * np.sqrt(w) + (0.5 * w if axis == 0 else 0.0)
-        found.append(np.select(ranges, [_oseen(slow)[axis], fast], between))
-    return found[0], found[1]
+def resistance_table(slenderness: float) -> tuple[Array, float, Array]:
+    """Of `Drag`: the polynomials, w₀, and what joins Oseen to Stokes."""
+    return np.array(_matched()), _joint(slenderness), np.array(_at_joint(slenderness)).T
 
 
-def _oseen(w: Array) -> tuple[Array, Array]:
-    """(w c_n, w c_τ) of the creeping flow."""
-    s = OSEEN - np.log(w)
-    twice = 2 * s - 1
-    normal = 4 * math.pi / s * (1 - w**2 * (s**2 - s / 2 + 5 / 16) / (32 * s))
-    along = 1 - w**2 * (2 * s**2 - 2 * s + 1) / (16 * twice)
-    return normal, 4 * math.pi / twice * along
+def _resistances(w: Array, slenderness: float) -> tuple[Array, Array]:
+    """(w c_n, w c_τ); for δ = 0 Oseen's however slow the flow is, at w > 0."""
+    table = np.array(_matched()), 0.0, np.zeros((2, 3))
+    if slenderness:
+        table = resistance_table(slenderness)
+    found = np.empty((2, w.size))
+    many_resistances(w.ravel(), *table, found)
+    return found[0].reshape(w.shape), found[1].reshape(w.shape)
 
 
 def _oseen_slopes(w: float) -> tuple[float, float]:
@@ -251,7 +236,7 @@ def _matched() -> tuple[Array, Array]:
     powers = np.arange(4)
     values = ends[:, None] ** powers
     slopes = powers * ends[:, None] ** np.maximum(powers - 1, 0)
-    creeping = [float(r) for r in _oseen(np.array(CREEPING))]
+    creeping = oseen(CREEPING)
     # d ln c/d ln w = w r'/r − 1.
     start = [
         CREEPING * slope / r - 1
@@ -292,9 +277,7 @@ def _stokes(slenderness: float) -> tuple[float, float]:
 def _at_joint(slenderness: float) -> tuple[tuple[float, float], ...]:
     """Values at w₀, at 0, and slopes at w₀, each of r_n and r_τ."""
     joined = _joint(slenderness)
-    normal, tangential = _oseen(np.array(joined))
-    ends = float(normal), float(tangential)
-    return ends, _stokes(slenderness), _oseen_slopes(joined)
+    return oseen(joined), _stokes(slenderness), _oseen_slopes(joined)
 
 
 def _checked_reynolds(name: str, w: ArrayLike) -> Array:

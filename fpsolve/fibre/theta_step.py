@@ -7,21 +7,15 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import solve_banded
 
+from fpsolve._kernels.chain import Chain, Iterate, Step
 from fpsolve._support.arrays import Array
-from fpsolve.errors import EdgeLengthError
 from fpsolve.fibre.air import AirFlow
 from fpsolve.fibre.forces import Forces
+from fpsolve.fibre.newton import Wind, found_step
 from fpsolve.fibre.string import String
 
 __all__ = ["ThetaStep"]
-
-# Bandwidth of unknowns (r_i, T_i) side by side: bending reaches two nodes far.
-REACH = 8
-# Of an edge: deviations of its length that Newton's method leaves.
-KEPT = 1e-12
-MOST_ITERATIONS = 25
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,125 +55,35 @@ class ThetaStep:
         return np.setdiff1d(nodes, self.string.moving)
 
     @cached_property
-    def _inertia(self) -> tuple[Array, Array]:
-        """Of every node what multiplies r¹ − r⁰ and v⁰."""
-        masses = self.string.masses
-        drag = self.damping * masses / self.string.line_density
-        by_mass = masses / (self.theta * self.dt)
-        return by_mass / self.dt + drag / self.dt, by_mass
-
-    @cached_property
-    def _constant(self) -> Array:
-        """The part of the matrix that no iteration changes, shape (17, n + 1, 4)."""
-        n = self.string.n_edges
-        banded = np.zeros((2 * REACH + 1, n + 1, 4))
-        bending = self._forces.bending
+    def _chain(self) -> Chain:
+        """The string as kernels know it, its held ends fixed."""
+        string, bending = self.string, np.zeros((self.string.n_edges + 1, 5))
         for apart in (-2, -1, 0, 1, 2):
-            diagonal = self.theta * bending.diagonal(apart)
-            # Row i, column i + apart.
-            columns = slice(max(apart, 0), n + 1 + min(apart, 0))
-            banded[REACH - 4 * apart, columns, :3] = diagonal[:, None]
-        banded[REACH, :, :3] += self._inertia[0][:, None]
-        return banded
-
-    @cached_property
-    def _rows_held(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """Places of the rows of nodes that are held, in the banded matrix."""
-        rows = (4 * self._held[:, None] + np.arange(3)).ravel()
-        columns = rows[:, None] + np.arange(-REACH, REACH + 1)
-        diagonals = REACH + rows[:, None] - columns
-        inside = (columns >= 0) & (columns < 4 * (self.string.n_edges + 1))
-        return diagonals[inside], columns[inside]
+            rows = slice(max(-apart, 0), string.n_edges + 1 - max(apart, 0))
+            bending[rows, apart + 2] = self._forces.bending.diagonal(apart)
+        fixed = np.zeros((string.n_edges + 1, 3), dtype=bool)
+        fixed[self._held] = True
+        return Chain(bending, self._forces.constant, string.masses, fixed, string.edge)
 
     def __call__(
-        self, r: Array, v: Array, tension: Array, t: float
+        self, r: Array, v: Array, tension: Array, t: float, force: Array | None = None
     ) -> tuple[Array, Array, Array, int]:
         """r, v, T at the end of the step that begins at time t, and the iterations.
+
+        A `force` on the nodes, in N, shape (n + 1, 3), stays what it is for the step.
 
         Raises
         ------
         EdgeLengthError
             If Newton's method does not converge.
         """
-        string, theta = self.string, self.theta
-        moved = self.dt * v
-        moved[self._held] = 0.0
-        allowed = KEPT * string.edge
-        change = np.inf
-        for iteration in range(MOST_ITERATIONS):
-            stretched = self._forces.stretched(r + moved)
-            left = np.abs(stretched).max()
-            if change <= 1e3 * allowed and left <= allowed:
-                rate = moved / self.dt
-                return r + moved, v + (rate - v) / theta, tension, iteration
-            if not np.isfinite(left):
-                break
-            middle = r + theta * moved
-            balance = self._inertia[0][:, None] * moved - self._inertia[1][:, None] * v
-            balance -= self._forces.total(middle, tension)
-            slope = None
-            if self.air is not None:
-                force, slope = self._pulled(middle, moved / self.dt, t)
-                balance -= force
-            balance[self._held] = 0.0
-            banded = self._matrix(middle, r + moved, tension, slope)
-            solved = self._solve(banded, balance, stretched)
-            moved = moved + solved[:, :3]
-            tension = tension + solved[:-1, 3]
-            change = np.abs(solved[:, :3]).max()
-        raise EdgeLengthError(t, self.dt, float(left / string.edge))
-
-    def _pulled(self, middle: Array, rate: Array, t: float) -> tuple[Array, Array]:
-        """Force of the air on every node, and what multiplies −(r¹ − r⁰) in it."""
-        air = self.air
-        assert air is not None
-        # Of half of both neighbours; an end has one.
-        edges = np.diff(middle, axis=0)
-        tangent = np.concatenate([edges[:1], edges[1:] + edges[:-1], edges[-1:]])
-        tangent /= np.linalg.norm(tangent, axis=1, keepdims=True)
-        wind = air.at(middle, t + self.theta * self.dt) - rate
-        force, slope = air.pull(self.string.diameter, wind, tangent)
-        lengths = self.string.masses / self.string.line_density
-        return lengths[:, None] * force, (lengths / self.dt)[:, None, None] * slope
-
-    def _matrix(
-        self, middle: Array, end: Array, tension: Array, slope: Array | None
-    ) -> Array:
-        """The banded matrix of Newton's method, shape (17, 4 (n + 1))."""
-        h, banded = self.string.edge, self._constant.copy()
-        pulled = (self.theta / h * tension)[:, None]
-        banded[REACH, :-1, :3] += pulled
-        banded[REACH, 1:, :3] += pulled
-        banded[REACH + 4, :-1, :3] -= pulled
-        banded[REACH - 4, 1:, :3] -= pulled
-        if slope is not None:
-            for row in range(3):
-                for column in range(3):
-                    banded[REACH + row - column, :, column] += slope[:, row, column]
-        # Columns of the tensions, along the edges in the middle of the step …
-        edges = np.diff(middle, axis=0) / h
-        banded[REACH - 3 : REACH, :-1, 3] = -edges.T
-        banded[REACH + 1 : REACH + 4, :-1, 3] = edges.T
-        flat = banded.reshape(2 * REACH + 1, -1)
-        flat[self._rows_held] = 0.0
-        flat[REACH, (4 * self._held[:, None] + np.arange(3)).ravel()] = 1.0
-        # … and rows of the lengths, at its end.
-        edges = np.diff(end, axis=0) / h
-        for axis in range(3):
-            banded[REACH + 3 - axis, :-1, axis] = -edges[:, axis]
-            banded[REACH - 1 - axis, 1:, axis] = edges[:, axis]
-        return flat
-
-    def _solve(self, banded: Array, balance: Array, stretched: Array) -> Array:
-        """Changes (r_i, T_i) of Newton's method, shape (n + 1, 4)."""
-        n = self.string.n_edges
-        known = np.zeros((n + 1, 4))
-        known[:, :3] = -balance
-        known[:-1, 3] = -stretched
-        # The last node has no edge behind it.
-        size = 4 * n + 3
-        solved = np.zeros(4 * (n + 1))
-        solved[:size] = solve_banded(
-            (REACH, REACH), banded[:, :size], known.ravel()[:size], check_finite=False
-        )
-        return solved.reshape(n + 1, 4)
+        string = self.string
+        iterate = Iterate(r, v, self.dt * v, tension.copy())
+        iterate.moved[self._held] = 0.0
+        step = Step(self.dt, self.theta, self.damping / string.line_density)
+        wind = None if self.air is None else Wind(self.air, string)
+        iterations = found_step(self._chain, step, iterate, wind, t, force)
+        rate = iterate.moved / self.dt
+        return (
+            r + iterate.moved, v + (rate - v) / self.theta, iterate.tension, iterations
+        )  # fmt: skip

@@ -1,0 +1,161 @@
+"""Drag of the air on pieces of a thin cylinder, and its slope in the velocity."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fpsolve._kernels.compiling import njit
+
+__all__ = [
+    "CREEPING",
+    "FAST",
+    "OSEEN",
+    "Drag",
+    "drag_slopes",
+    "many_resistances",
+    "oseen",
+    "pull_chain",
+]
+
+# Reynolds numbers up to which Oseen's expansion holds, and from which the boundary
+# layer decides.
+CREEPING, FAST = 0.1, 100.0
+# ½ − γ + ln 8, as [MW11]_ gives it.
+OSEEN = 2.0022
+# Relative change of a Reynolds number for the slope of a resistance.
+CHANGE = 1e-6
+# Squares of speeds are divided by, of air at rest too.
+SMALLEST = 1e-300
+
+
+class Drag(NamedTuple):
+    """f = ρν (r_n(w) v_n + r_τ(w) v_τ), w = (d/ν)|v_n|.
+
+    Attributes
+    ----------
+    between : ndarray, shape (2, 4)
+        Of ln c_n and ln c_τ in powers of ln w, between both ends.
+    joined : float
+        w₀ below which a cubic leads to Stokes's limit.
+    joint : ndarray, shape (2, 3)
+        Values at w₀, at 0, and slopes at w₀, of r_n and r_τ.
+    reynolds : float
+        d/ν.
+    scale : float
+        ρν.
+    """
+
+    between: NDArray[np.float64]
+    joined: float
+    joint: NDArray[np.float64]
+    reynolds: float
+    scale: float
+
+
+@njit(cache=True, fastmath={"contract"}, error_model="numpy")
+def oseen(w):
+    """(w c_n, w c_τ) of the creeping flow."""
+    s = OSEEN - np.log(w)
+    twice = 2 * s - 1
+    normal = 4 * np.pi / s * (1 - w**2 * (s**2 - s / 2 + 5 / 16) / (32 * s))
+    along = 1 - w**2 * (2 * s**2 - 2 * s + 1) / (16 * twice)
+    return normal, 4 * np.pi / twice * along
+
+
+@njit(cache=True, fastmath={"contract"}, error_model="numpy")
+def _resistances(w, between, joined, joint):
+    """(w c_n, w c_τ) for w ≥ 0; see `Drag`."""
+    if w < joined:
+        x = w / joined
+        for_normal, for_along = joint
+        return _rising(x, for_normal, joined), _rising(x, for_along, joined)
+    if w < CREEPING:
+        return oseen(w)
+    if w > FAST:
+        root = 2 * np.sqrt(w)
+        return root + 0.5 * w, root
+    x = np.log(w)
+    normal, along = between
+    return (
+        w * np.exp(normal[0] + x * (normal[1] + x * (normal[2] + x * normal[3]))),
+        w * np.exp(along[0] + x * (along[1] + x * (along[2] + x * along[3]))),
+    )
+
+
+@njit(cache=True, fastmath={"contract"}, error_model="numpy")
+def _rising(x, values, joined):
+    """The cubic from Stokes's limit, where it has no slope, to the joint at x = 1."""
+    end, start, slope = values
+    rise, last = end - start, slope * joined
+    return start + x**2 * (3 * rise - last + x * (last - 2 * rise))
+
+
+@njit(cache=True, fastmath={"contract"}, error_model="numpy")
+def many_resistances(w, between, joined, joint, out):
+    """(w c_n, w c_τ) for w ≥ 0 (n,), out (2, n); see `Drag`."""
+    for i in range(w.size):
+        out[0, i], out[1, i] = _resistances(w[i], between, joined, joint)
+
+
+@njit(cache=True, fastmath={"contract"}, error_model="numpy")
+def _pull(drag, v, tangent, force, slope):
+    """Force per length and −∂f/∂v of one place; the arguments are rows."""
+    moving = v[0] * tangent[0] + v[1] * tangent[1] + v[2] * tangent[2]
+    square = 0.0
+    for c in range(3):
+        across = v[c] - moving * tangent[c]
+        square += across * across
+    w = drag.reynolds * np.sqrt(square)
+    changed = w + CHANGE * max(w, 1e-3)
+    r_n, r_t = _resistances(w, drag.between, drag.joined, drag.joint)
+    risen, followed = _resistances(changed, drag.between, drag.joined, drag.joint)
+    # Resistances grow with the speed across: ∂w/∂v = w v_n/|v_n|².
+    steeper = w / ((changed - w) * max(square, SMALLEST))
+    for c in range(3):
+        along = moving * tangent[c]
+        force[c] = drag.scale * (r_n * (v[c] - along) + r_t * along)
+    for c in range(3):
+        along = moving * tangent[c]
+        grown = (risen - r_n) * (v[c] - along) + (followed - r_t) * along
+        for d in range(3):
+            both = tangent[c] * tangent[d]
+            found = r_t * both - r_n * both
+            if c == d:
+                found += r_n
+            found += steeper * grown * (v[d] - moving * tangent[d])
+            slope[c, d] = drag.scale * found
+
+
+@njit(cache=True, fastmath={"contract"}, error_model="numpy")
+def drag_slopes(drag, velocity, tangent, force, slope):
+    """f and ∂f/∂v for velocities of the air past the fibre, (n, 3) and (n, 3, 3)."""
+    for i in range(velocity.shape[0]):
+        _pull(drag, velocity[i], tangent[i], force[i], slope[i])
+
+
+@njit(cache=True, fastmath={"contract"}, error_model="numpy")
+def pull_chain(drag, middle, rate, wind, lengths, force, slope):
+    """Force on every node of a chain, and its slope in the velocity of the node.
+
+    middle, rate, wind (n + 1, 3) positions, velocities, and those of the air; lengths
+    (n + 1,) of the fibre at every node.
+    """
+    last = middle.shape[0] - 1
+    tangent, relative = np.empty(3), np.empty(3)
+    for i in range(last + 1):
+        # Of half of both neighbours; an end has one.
+        before, after = max(i - 1, 0), min(i + 1, last)
+        square = 0.0
+        for c in range(3):
+            tangent[c] = middle[after, c] - middle[before, c]
+            square += tangent[c] * tangent[c]
+            relative[c] = wind[i, c] - rate[i, c]
+        size = np.sqrt(square)
+        for c in range(3):
+            tangent[c] /= size
+        _pull(drag, relative, tangent, force[i], slope[i])
+        for c in range(3):
+            force[i, c] *= lengths[i]
+            for d in range(3):
+                slope[i, c, d] *= lengths[i]

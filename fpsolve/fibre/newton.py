@@ -1,0 +1,102 @@
+"""Newton's method for the step of a chain, in whatever flow it is."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from fpsolve._kernels.chain import (
+    REACH,
+    Chain,
+    Iterate,
+    Pull,
+    Step,
+    largest_stretch,
+    newton,
+)
+from fpsolve._kernels.drag import Drag, pull_chain
+from fpsolve._support.arrays import Array
+from fpsolve.errors import EdgeLengthError
+from fpsolve.fibre.air import AirFlow
+from fpsolve.fibre.string import String
+
+__all__ = ["Wind", "found_step"]
+
+# Of an edge: deviations of its length that Newton's method leaves.
+KEPT = 1e-12
+MOST_ITERATIONS = 25
+
+
+@dataclass(frozen=True, eq=False)
+class Wind:
+    """The air around a fibre, as a force on the nodes of its chain.
+
+    Attributes
+    ----------
+    air : AirFlow
+    string : String
+        Of which diameter and weight count.
+    """
+
+    air: AirFlow
+    string: String
+
+    @cached_property
+    def _drag(self) -> Drag:
+        return self.air.drag(self.string.diameter)
+
+    def pull(
+        self, chain: Chain, step: Step, iterate: Iterate, t: float, pull: Pull
+    ) -> None:
+        """Its force in the middle of the step and the slope of it, into `pull`.
+
+        How the force changes with the place and the direction of the fibre is
+        neglected in the slope, which costs an iteration.
+        """
+        middle = iterate.r + step.theta * iterate.moved
+        wind = self.air.at(middle, t + step.theta * step.dt)
+        lengths = chain.masses / self.string.line_density
+        rate = iterate.moved / step.dt
+        pull_chain(self._drag, middle, rate, wind, lengths, *pull)
+
+
+def found_step(
+    chain: Chain,
+    step: Step,
+    iterate: Iterate,
+    wind: Wind | None,
+    t: float,
+    force: Array | None = None,
+) -> int:
+    """Solve for `moved` and `tension` of the iterate in place; returns iterations.
+
+    A `force` on the nodes, shape (n + 1, 3), acts throughout.
+
+    Raises
+    ------
+    EdgeLengthError
+        If Newton's method does not converge.
+    """
+    size = 4 * chain.masses.size - 1
+    rows, known = np.empty((size, 2 * REACH + 1)), np.empty(size)
+    pull = _none(chain.masses)
+    allowed, change = KEPT * chain.edge, np.inf
+    for iteration in range(MOST_ITERATIONS):
+        left = largest_stretch(chain.edge, iterate.r, iterate.moved)
+        if change <= 1e3 * allowed and left <= allowed:
+            return iteration
+        if not np.isfinite(left):
+            break
+        if wind is not None:
+            wind.pull(chain, step, iterate, t, pull)
+        if force is not None:
+            pull.force[...] = force if wind is None else pull.force + force
+        change = newton(chain, step, iterate, pull, rows, known)
+    raise EdgeLengthError(t, step.dt, float(left / chain.edge))
+
+
+def _none(masses: Array) -> Pull:
+    """No force on any node."""
+    return Pull(np.zeros((masses.size, 3)), np.zeros((masses.size, 3, 3)))

@@ -1,0 +1,158 @@
+"""Kernels of the string: banded systems, a step of Newton's method, drag."""
+
+import numpy as np
+import pytest
+from scipy.linalg import solve_banded
+
+from fpsolve._kernels import banded, chain, drag
+from fpsolve._kernels.chain import Chain, Iterate, Pull, Step
+from fpsolve.fibre import AirFlow
+
+N_EDGES = 6
+
+
+def banded_problem(n, reach, rng):
+    """Rows from their first column on, the same as a dense matrix, a right side."""
+    dense = np.triu(np.tril(rng.normal(size=(n, n)), reach), -reach)
+    # Zeros on the diagonal, as the rows of lengths have them: pivots are needed.
+    dense[np.arange(3, n, 4), np.arange(3, n, 4)] = 0.0
+    rows = np.zeros((n, 2 * reach + 1))
+    for i in range(n):
+        first = max(0, i - reach)
+        part = dense[i, first : i + reach + 1]
+        rows[i, : part.size] = part
+    return rows, dense, rng.normal(size=n)
+
+
+@pytest.mark.parametrize("reach", [1, 8])
+def test_a_banded_system_is_solved_as_by_lapack(reach):
+    rng = np.random.default_rng(4)
+    rows, dense, known = banded_problem(43, reach, rng)
+    bands = np.zeros((2 * reach + 1, 43))
+    for i in range(43):
+        for j in range(max(0, i - reach), min(43, i + reach + 1)):
+            bands[reach + i - j, j] = dense[i, j]
+    expected = solve_banded((reach, reach), bands, known)
+    found = known.copy()
+    banded.solve_banded_rows(rows, found)
+    # The same pivots; fused operations round otherwise, times the condition.
+    allowed = 1e-15 * np.linalg.cond(dense) * np.abs(expected).max()
+    np.testing.assert_allclose(found, expected, rtol=0, atol=allowed)
+
+
+def test_a_singular_system_leaves_no_number():
+    rows, known = np.zeros((8, 3)), np.ones(8)
+    banded.solve_banded_rows(rows, known)
+    assert not np.isfinite(known).any()
+
+
+def newton_problem():
+    rng = np.random.default_rng(5)
+    nodes = N_EDGES + 1
+    bending = rng.normal(size=(nodes, 5))
+    fixed = np.zeros((nodes, 3), dtype=bool)
+    fixed[0], fixed[-2:], fixed[3, 2] = True, True, True
+    masses = rng.uniform(1, 2, nodes)
+    numbers = Chain(bending, rng.normal(size=(nodes, 3)), masses, fixed, 0.5)
+    r = np.cumsum(rng.normal(size=(nodes, 3)), axis=0)
+    moved, v = rng.normal(size=(2, nodes, 3))
+    slope = rng.normal(size=(nodes, 3, 3))
+    iterate = Iterate(r, v, moved, rng.normal(size=N_EDGES))
+    return numbers, Step(0.3, 0.6, 0.2), iterate, Pull(0.1 * v, slope)
+
+
+def after(function, problem):
+    numbers, step, iterate, pull = problem
+    mine = Iterate(*(one.copy() for one in iterate))
+    rows, known = np.full((4 * N_EDGES + 3, 17), 7.0), np.full(4 * N_EDGES + 3, 7.0)
+    largest = function(numbers, step, mine, pull, rows, known)
+    return largest, mine
+
+
+def test_a_compiled_step_of_newton_equals_its_source():
+    compiled = after(chain.newton, newton_problem())
+    python = after(chain.newton.py_func, newton_problem())
+    assert compiled[0] == pytest.approx(python[0], rel=1e-11)
+    for one, other in zip(compiled[1], python[1], strict=True):
+        # Rounding of some 20 numbers, times the condition 1e3 of the system.
+        np.testing.assert_allclose(one, other, rtol=0, atol=1e-11)
+
+
+def balance(problem, moved, tension):
+    """Forces and inertia at the nodes, lengths of the edges, by plain arithmetic."""
+    numbers, step, iterate, pull = problem
+    r, v = iterate.r, iterate.v
+    middle, h = r + step.theta * moved, numbers.edge
+    rate = moved / step.dt
+    change = (rate - v) / (step.theta * step.dt) + step.damping * rate
+    found = numbers.masses[:, None] * change - numbers.constant - pull.force
+    # The force of the air is known at `iterate.moved`, and linear from there.
+    since = (moved - iterate.moved) / step.dt
+    found += np.einsum("nij,nj->ni", pull.slope, since)
+    for i in range(N_EDGES + 1):
+        for apart in range(-2, 3):
+            if 0 <= i + apart <= N_EDGES:
+                found[i] += numbers.bending[i, apart + 2] * middle[i + apart]
+    pulled = tension[:, None] * np.diff(middle, axis=0) / h
+    found[:-1] -= pulled
+    found[1:] += pulled
+    length = ((np.diff(r + moved, axis=0) ** 2).sum(axis=1) - h**2) / (2 * h)
+    laid = numbers.fixed[:-1].all(axis=1) & numbers.fixed[1:].all(axis=1)
+    return np.where(numbers.fixed, moved, found), np.where(laid, tension, length)
+
+
+def test_a_step_of_newton_solves_the_linearised_balance():
+    problem = newton_problem()
+    old = problem[2]
+    _, new = after(chain.newton, problem)
+    step = new.moved - old.moved, new.tension - old.tension
+    np.testing.assert_array_equal(step[0][problem[0].fixed], 0.0)
+    forces, lengths = balance(problem, old.moved, old.tension)
+    # Derivatives along the step; quadratic functions, so that differences are exact.
+    ahead = balance(problem, old.moved + step[0], old.tension + step[1])
+    behind = balance(problem, old.moved - step[0], old.tension - step[1])
+    free = ~problem[0].fixed
+    slope = 0.5 * (ahead[0] - behind[0])
+    size = np.abs(slope).max() + np.abs(forces).max()
+    np.testing.assert_allclose(slope[free], -forces[free], rtol=0, atol=1e-11 * size)
+    size = np.abs(ahead[1]).max()
+    np.testing.assert_allclose(
+        0.5 * (ahead[1] - behind[1]), -lengths, rtol=0, atol=1e-11 * size
+    )
+
+
+def test_the_largest_stretch_sees_what_is_no_number():
+    r = np.cumsum(np.ones((5, 3)), axis=0)
+    moved = np.zeros((5, 3))
+    expected = (3 - 0.25) / 1.0
+    assert chain.largest_stretch(0.5, r, moved) == pytest.approx(expected)
+    assert chain.largest_stretch.py_func(0.5, r, moved) == pytest.approx(expected)
+    moved[2, 1] = np.nan
+    assert np.isnan(chain.largest_stretch(0.5, r, moved))
+
+
+def test_compiled_drag_equals_its_source():
+    rng = np.random.default_rng(6)
+    numbers = AirFlow((0.0, 0.0, 0.0)).drag(20e-6)
+    r = np.cumsum(rng.normal(size=(9, 3)), axis=0)
+    # Of Reynolds numbers in all four ranges.
+    wind = rng.normal(size=(9, 3)) * np.geomspace(1e-4, 1e3, 9)[:, None]
+    rate, lengths = 0.01 * wind[::-1], rng.uniform(1, 2, 9)
+    tangent = r / np.linalg.norm(r, axis=1, keepdims=True)
+    for name, arguments in (
+        ("pull_chain", (numbers, r, rate, wind, lengths)),
+        ("drag_slopes", (numbers, wind, tangent)),
+    ):
+        results = []
+        for function in (getattr(drag, name), getattr(drag, name).py_func):
+            out = np.empty((9, 3)), np.empty((9, 3, 3))
+            function(*arguments, *out)
+            results.append(out)
+        for one, other in zip(*results, strict=True):
+            # Rounding; slopes are differences of 1e-6 of it.
+            np.testing.assert_allclose(one, other, rtol=1e-8, atol=1e-22)
+    w = np.geomspace(1e-5, 1e4, 30)
+    out = np.empty((2, 2, 30))
+    drag.many_resistances(w, *numbers[:3], out[0])
+    drag.many_resistances.py_func(w, *numbers[:3], out[1])
+    np.testing.assert_allclose(out[0], out[1], rtol=1e-14)
