@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from fpsolve.pages.blocks import Block, Facts, Part, Section, Table
 from fpsolve.pages.figures import drawings
 from fpsolve.pages.origin import provenance_part
 from fpsolve.pages.settings import model_facts, model_or_unread
 
 if TYPE_CHECKING:
+    from fpsolve._support.arrays import Array
     from fpsolve.web.prediction import WebPrediction
 
 __all__ = ["section"]
@@ -62,15 +65,41 @@ def _tables(prediction: WebPrediction) -> list[Block]:
 
 
 def _gradients(prediction: WebPrediction) -> list[Block]:
-    """∂CV by every parameter, a column for every zone."""
+    """∂CV by every parameter, a column for every zone; then of bands and of MD/CD."""
     if prediction.gradient is None or prediction.gradient_errors is None:
         return []
+    tables = [_derivatives(
+        prediction,
+        "Derivatives of CV in the parameters, each with bounds of its error.",
+        [f"side {side:g}" for side in prediction.zones],
+        prediction.gradient, prediction.gradient_errors,
+    )]  # fmt: skip
+    ratio, wrong = (
+        prediction.machine_cross_gradient,
+        prediction.machine_cross_gradient_errors,
+    )
+    of_bands = prediction.cloudiness_gradient, prediction.cloudiness_gradient_errors
+    if ratio is None or wrong is None or of_bands[0] is None or of_bands[1] is None:
+        return [*tables]
+    bands = zip(prediction.shortest, prediction.longest, strict=True)
+    headings = [*(f"{short:g} to {long:g}" for short, long in bands), "MD/CD"]
+    tables.append(_derivatives(
+        prediction, "Derivatives of the cloudiness of bands and of MD/CD.", headings,
+        np.column_stack([of_bands[0], ratio]), np.column_stack([of_bands[1], wrong]),
+    ))  # fmt: skip
+    return [*tables]
+
+
+def _derivatives(
+    prediction: WebPrediction,
+    caption: str,
+    headings: list[str],
+    values: Array,
+    errors: Array,
+) -> Table:
+    """A row for every parameter."""
     rows = []
-    for place, name in enumerate(prediction.parameters):
-        pairs = zip(
-            prediction.gradient[place], prediction.gradient_errors[place], strict=True
-        )
+    for name, some, wrong in zip(prediction.parameters, values, errors, strict=True):
+        pairs = zip(some, wrong, strict=True)
         rows.append((name, *(f"{one:.4g} ± {error:.1g}" for one, error in pairs)))
-    told = "Derivatives of CV in the parameters, each with bounds of its error."
-    sides = (f"side {side:g}" for side in prediction.zones)
-    return [Table(told, ("parameter", *sides), rows, words=frozenset((0,)))]
+    return Table(caption, ("parameter", *headings), rows, words=frozenset((0,)))

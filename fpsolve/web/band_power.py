@@ -16,12 +16,18 @@ PER_OCTAVE, N_DIRECTIONS = 24, 64
 def band_power(
     table: SpectrumTable, longest: float, shortest: float
 ) -> tuple[float, float]:
-    """∫ Ŝ d²k/(2π)² over wavelengths 2π/|k| from `shortest` to `longest`; its error."""
+    """∫ Ŝ d²k/(2π)² over wavelengths 2π/|k| from `shortest` to `longest`; its error.
+
+    Of a table of derivatives it is the derivative of that.
+    """
     k1, k2, weights = _nodes(table, 2 * np.pi / longest, 2 * np.pi / shortest)
     power = float(weights @ table(k1, k2))
     changes = [abs(float(weights @ table(k1, k2, axis)) - power) for axis in AXES]
-    of_nodes = max(table.share, table.source.tolerance)
-    return power / np.pi**2, (sum(changes) + of_nodes * power) / np.pi**2
+    if table.source.column:
+        of_nodes = float(weights @ table.bound(k1, k2))
+    else:
+        of_nodes = max(table.share, table.source.tolerance) * power
+    return power / np.pi**2, (sum(changes) + of_nodes) / np.pi**2
 
 
 def _nodes(table: SpectrumTable, low: float, high: float) -> tuple[Array, Array, Array]:

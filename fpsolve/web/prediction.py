@@ -72,6 +72,16 @@ PREDICTION = Layout(
              "∂amplitude/∂parameter of the strips", optional=True),
     Variable("strip_gradient_error", ("parameter", "strip"),
              "error of ∂amplitude/∂parameter", "strip_gradient_errors", optional=True),
+    Variable("cloudiness_gradient", ("parameter", "band"), "∂cloudiness/∂parameter",
+             optional=True),
+    Variable("cloudiness_gradient_error", ("parameter", "band"),
+             "error of ∂cloudiness/∂parameter", "cloudiness_gradient_errors",
+             optional=True),
+    Variable("orientation_gradient", ("parameter", "row", "column"),
+             "∂⟨τ⊗τ⟩/∂parameter", optional=True),
+    Variable("orientation_gradient_error", ("parameter", "row", "column"),
+             "error of ∂⟨τ⊗τ⟩/∂parameter", "orientation_gradient_errors",
+             optional=True),
 )  # fmt: skip
 
 
@@ -111,6 +121,10 @@ class WebPrediction(Saved):
         ∂CV/∂parameter at fixed other parameters, and bounds of the errors.
     strip_gradient, strip_gradient_errors : ndarray, shape (parameter, strip), or None
         ∂ of `strips`.
+    cloudiness_gradient, cloudiness_gradient_errors : ndarray or None
+        ∂ of `cloudiness`, of shape (parameter, band).
+    orientation_gradient, orientation_gradient_errors : ndarray or None
+        ∂ of `orientation`, of shape (parameter, 2, 2).
     call : Call or None
         How it was made.
     provenance : dict
@@ -140,6 +154,10 @@ class WebPrediction(Saved):
     gradient_errors: Array | None = None
     strip_gradient: Array | None = None
     strip_gradient_errors: Array | None = None
+    cloudiness_gradient: Array | None = None
+    cloudiness_gradient_errors: Array | None = None
+    orientation_gradient: Array | None = None
+    orientation_gradient_errors: Array | None = None
     call: Call | None = None
     provenance: dict[str, Any] = field(default_factory=dict)
 
@@ -165,6 +183,35 @@ class WebPrediction(Saved):
     def machine_cross_ratio(self) -> float:
         """MD/CD = ⟨τ₁²⟩/⟨τ₂²⟩, 1 without a preferred direction."""
         return float(self.orientation[0, 0] / self.orientation[1, 1])
+
+    @property
+    def machine_cross_gradient(self) -> Array | None:
+        """∂ `machine_cross_ratio` = ∂⟨τ₁²⟩/⟨τ₂²⟩² in every parameter.
+
+        None without `gradients`. From ⟨τ₁²⟩ + ⟨τ₂²⟩ = 1.
+        """
+        if self.orientation_gradient is None:
+            return None
+        return np.asarray(
+            self.orientation_gradient[:, 0, 0] / self.orientation[1, 1] ** 2
+        )
+
+    @property
+    def machine_cross_gradient_errors(self) -> Array | None:
+        """Bounds of its errors, by those of the orientation and of its derivatives."""
+        if (
+            self.orientation_gradient is None
+            or self.orientation_gradient_errors is None
+        ):
+            return None
+        across, error = self.orientation[1, 1], self.orientation_errors[1, 1]
+        least = max(across - error, 0.0)
+        with np.errstate(divide="ignore"):
+            largest = np.abs(self.orientation_gradient[:, 0, 0])
+            changed = largest * np.abs(1.0 / np.square(least) - 1.0 / across**2)
+            return np.asarray(
+                changed + self.orientation_gradient_errors[:, 0, 0] / np.square(least)
+            )
 
     def __repr__(self) -> str:
         told = ", ".join(

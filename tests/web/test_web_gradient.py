@@ -10,12 +10,14 @@ import fpsolve as fp
 from fpsolve.pages import predicted_web
 from fpsolve.results.kinds import from_xarray
 from fpsolve.spectral.resolvent.fibre import BasicFibre
-from fpsolve.web.gradient import strip_gradient
+from fpsolve.web.coherent_gradient import strip_gradient
+from fpsolve.web.gradient import orientation_gradient
 
 # Sides in triples, for differences in the side.
 H = 0.01
 SIDES = np.outer([0.3, 4.0], [1 - H, 1.0, 1 + H]).ravel()
 MIDDLE = slice(1, None, 3)
+BAND = np.array([0.5, 3.0])
 
 
 def predicted(numbers, zones, **options):
@@ -24,7 +26,8 @@ def predicted(numbers, zones, **options):
 
 @pytest.fixture(scope="module")
 def web():
-    return predicted(NUMBERS, SIDES, tolerance=0.05, gradients=True)
+    bands = [share * BAND for share in (1 - H, 1.0, 1 + H)]
+    return predicted(NUMBERS, SIDES, bands=bands, tolerance=0.05, gradients=True)
 
 
 @pytest.fixture
@@ -53,6 +56,33 @@ def test_gradients_fulfil_the_law_of_dimensions(web):
     assert "∂ by noise, belt_speed" in repr(web)
 
 
+@pytest.mark.nightly
+def test_gradients_of_the_cloudiness_fulfil_the_law_of_dimensions(web):
+    """The same with both ends of the band in place of the side of the zone."""
+    weights = np.array([-0.5, 0.0, 1.0, 1.0, 1.0]) * NUMBERS
+    by_band = (web.cloudiness[2] - web.cloudiness[0]) / (2 * H)
+    total = weights @ web.cloudiness_gradient[:, 1] + by_band
+    size = np.abs(weights) @ np.abs(web.cloudiness_gradient[:, 1])
+    errors = np.abs(weights) @ web.cloudiness_gradient_errors[:, 1]
+    assert abs(total) <= min(errors, 0.02 * size)
+    # Errors of all nodes of one sign, as if nothing cancelled between them.
+    assert errors <= 0.2 * size
+
+
+def test_the_ratio_of_both_directions_fulfils_the_law_of_dimensions():
+    """σ1 ∂1 + σ2 ∂2 − (A/2) ∂_A of ⟨τ₁²⟩ is zero, within the errors.
+
+    Polynomials are kept, so that it is not so in one truncation by construction.
+    """
+    values, errors = orientation_gradient(BasicFibre(model_of(NUMBERS)))
+    weights = np.array([-0.5, 0.0, 1.0, 1.0, 1.0]) * NUMBERS
+    total = np.tensordot(weights, values, axes=1)
+    assert (np.abs(total) <= np.tensordot(np.abs(weights), errors, axes=1)).all()
+    assert np.abs(total).max() < 1e-10 < 1e-5 < np.abs(values[:4]).min(axis=0)[0, 0]
+    # ⟨τ₁²⟩ + ⟨τ₂²⟩ = 1 whatever the parameters.
+    assert (values[:, 0, 0] == -values[:, 1, 1]).all()
+
+
 @pytest.mark.parametrize(
     ("positions", "spacing"),
     [("regular", 0.3), pytest.param("random", 1.5, marks=pytest.mark.nightly)],
@@ -74,17 +104,29 @@ def test_a_process_has_the_gradient_of_its_own_numbers(few_nodes):
     """In metres σ1 ∂1 + σ2 ∂2 + d ∂d − (A/2) ∂_A is what it is without a unit."""
     process = fp.Process(4e-3, 3e-3, 30.0, 0.2, 20.0)
     options = {"tolerance": 0.5, "gradients": True}
-    found = fp.predict_web(process, spacing=6e-3, zones=8e-3, **options)
-    plain = fp.predict_web(process.model, spacing=1.5, zones=2.0, **options)
+    found = fp.predict_web(
+        process, spacing=6e-3, zones=8e-3, bands=[(2e-3, 1e-2)], **options
+    )
+    plain = fp.predict_web(
+        process.model, spacing=1.5, zones=2.0, bands=[(0.5, 2.5)], **options
+    )
     assert found.parameters == ("noise", "speed_ratio", "sigma1", "sigma2", "spacing")
     in_metres = np.array([30.0, 0.2, 4e-3, 3e-3, 6e-3])
     in_units = np.array([process.model.noise, 0.2, 1.0, 0.75, 1.5])
-    for name in ("gradient", "gradient_errors", "strip_gradient"):
+    for name in (
+        "gradient",
+        "gradient_errors",
+        "strip_gradient",
+        "cloudiness_gradient",
+    ):
         elasticities = in_metres[:, None] * getattr(found, name)
         assert elasticities == pytest.approx(
             in_units[:, None] * getattr(plain, name), rel=1e-9
         )
     assert found.mean_gradient[1] == pytest.approx(-found.mean / 0.2)
+    assert in_metres * found.machine_cross_gradient == pytest.approx(
+        in_units * plain.machine_cross_gradient, rel=1e-9
+    )
 
 
 def test_strips_of_a_slow_belt_change_as_those_of_a_gaussian():
@@ -111,10 +153,18 @@ def test_gradients_are_stored_and_files_without_them_read(web, tmp_path):
     assert fp.compare(web, back).equal
     for name in ("gradient", "gradient_errors", "strip_gradient"):
         assert (getattr(back, name) == getattr(web, name)).all()
-    names = ["gradient", "gradient_error", "strip_gradient", "strip_gradient_error"]
+    kinds = [
+        "gradient",
+        "strip_gradient",
+        "cloudiness_gradient",
+        "orientation_gradient",
+    ]
+    names = [*kinds, *(f"{kind}_error" for kind in kinds)]
     older = from_xarray(web.to_xarray().drop_vars([*names, "parameter"]))
     assert older.parameters == ()
     assert older.gradient is None
+    assert older.machine_cross_gradient is None
+    assert older.machine_cross_gradient_errors is None
     wrong = web.to_xarray().assign_coords(parameter=np.arange(5.0))
     with pytest.raises(ValueError, match="`parameter` must hold names"):
         from_xarray(wrong)
@@ -127,9 +177,13 @@ def test_a_page_shows_every_derivative_with_its_error(web, monkeypatch):
         block
         for part in predicted_web.section(web, "web.nc").parts
         for block in part.blocks
-        if getattr(block, "caption", "").startswith("Derivatives of CV")
+        if getattr(block, "caption", "").startswith("Derivatives of")
     ]
-    (table,) = tables
+    table, of_others = tables
+    assert of_others.rows[0][-1] == (
+        f"{web.machine_cross_gradient[0]:.4g} ± "
+        f"{web.machine_cross_gradient_errors[0]:.1g}"
+    )
     assert [row[0] for row in table.rows] == list(web.parameters)
     assert table.rows[1][2] == (
         f"{web.gradient[1, 1]:.4g} ± {web.gradient_errors[1, 1]:.1g}"

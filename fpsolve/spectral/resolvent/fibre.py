@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any, Protocol, cast
 
 import numpy as np
 
@@ -19,13 +19,18 @@ from fpsolve.spectral.resolvent.fibre_spectrum import (
     fibre_gradient,
     fibre_spectrum,
 )
+from fpsolve.spectral.resolvent.generator import Generator
 from fpsolve.spectral.resolvent.ladder import Ladder
 from fpsolve.spectral.resolvent.limit import (
     angle_harmonics,
+    harmonic_derivatives,
     limit_derivatives,
     short_wave_limit,
 )
-from fpsolve.spectral.resolvent.plane_waves import characteristic
+from fpsolve.spectral.resolvent.plane_waves import (
+    characteristic,
+    characteristic_changes,
+)
 from fpsolve.spectral.resolvent.round_ladder import RoundLadder, check_spectrum_model
 from fpsolve.spectral.resolvent.smooth_ladder import LAW, SmoothLadder
 from fpsolve.spectral.resolvent.smooth_limit import smooth_angle_limit
@@ -33,6 +38,7 @@ from fpsolve.spectral.resolvent.smooth_spectrum import LONG as SMOOTH_LONG
 from fpsolve.spectral.resolvent.smooth_spectrum import smooth_spectrum
 
 __all__ = [
+    "Differentiable",
     "Fibre",
     "check_fibre",
     "differentiable",
@@ -84,6 +90,35 @@ class Fibre(Protocol):
         """E cos 2α in two truncations, the finer one first."""
 
 
+class Differentiable(Fibre, Protocol):
+    """A fibre whose derivatives are known, too.
+
+    Attributes
+    ----------
+    parameters : tuple of str
+        What they are in.
+    """
+
+    @property
+    def parameters(self) -> tuple[str, ...]:
+        """What they are in."""
+
+    def gradient(self, k1: Array, k2: Array, tolerance: float) -> Pair:
+        """Ŝ and its derivatives in the parameters, (i, column), and their errors."""
+
+    def limit_changes(self, k: tuple[float, float]) -> Array:
+        """Derivatives of the end of short waves."""
+
+    def characteristic_changes(self, k2: Array) -> Pair:
+        """E e^{i k2 ξ2} and its derivatives in the parameters and in k2, (row, k2).
+
+        In two truncations, the finer one first.
+        """
+
+    def double_cosine_changes(self) -> Pair:
+        """Derivatives of E cos 2α in two truncations, the finer one first."""
+
+
 class _Resolved(Ladder):
     """A fibre of the basic model, in any basis."""
 
@@ -119,6 +154,11 @@ class _Resolved(Ladder):
 class BasicFibre(_Resolved):
     """A fibre of the basic model under a quadratic potential."""
 
+    @property
+    def parameters(self) -> tuple[str, ...]:
+        """What derivatives are in."""
+        return Generator.parameters
+
     def gradient(self, k1: Array, k2: Array, tolerance: float) -> Pair:
         """Ŝ and its derivatives in the parameters, (i, column), and their errors."""
         return fibre_gradient(self, k1, k2, tolerance)
@@ -126,6 +166,24 @@ class BasicFibre(_Resolved):
     def limit_changes(self, k: tuple[float, float]) -> Array:
         """Derivatives of the end of short waves."""
         return limit_derivatives(self.generator(ANGLE), k)
+
+    def characteristic_changes(self, k2: Array) -> Pair:
+        """E e^{i k2 ξ2} and its derivatives in the parameters and in k2, (row, k2)."""
+        rows = 2 + len(self.parameters)
+        fine, coarse = (
+            np.array([characteristic_changes(self.generator(one), k) for k in k2])
+            .reshape(k2.size, rows)
+            .T
+            for one in (FINE, COARSE)
+        )
+        return fine, coarse
+
+    def double_cosine_changes(self) -> Pair:
+        """Derivatives of E cos 2α in two truncations, the finer one first."""
+        fine, coarse = (
+            harmonic_derivatives(self.generator(one))[:, 2] for one in (FINE, COARSE)
+        )
+        return fine, coarse
 
 
 class RoundFibre(RoundLadder, _Resolved):
@@ -151,10 +209,10 @@ class SmoothFibre(SmoothLadder):
         return smooth_angle_limit(self.laws(LAW)[0], k)
 
 
-def differentiable(fibre: Fibre) -> BasicFibre:
+def differentiable(fibre: Fibre) -> Differentiable:
     """The same fibre, known to be one whose derivatives there are."""
-    assert isinstance(fibre, BasicFibre)
-    return fibre
+    assert has_gradients(fibre.model)
+    return cast(Differentiable, fibre)
 
 
 def has_gradients(model: Any) -> bool:

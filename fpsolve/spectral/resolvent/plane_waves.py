@@ -17,6 +17,7 @@ from fpsolve.spectral.resolvent.generator import Generator
 __all__ = [
     "against_wave",
     "characteristic",
+    "characteristic_changes",
     "multiplied",
     "plane_wave",
     "wave_derivative",
@@ -65,6 +66,14 @@ def wave_derivative(generator: Generator, k2: float) -> Complex:
 def characteristic(generator: Generator, k: WaveVector) -> complex:
     """E e^{ik·(ξ − c)} in the stationary law."""
     return complex(generator.stationary @ plane_wave(generator, k))
+
+
+def characteristic_changes(generator: Generator, k2: float) -> Array:
+    """φ(0, k2) and its derivatives, in the parameters and last in k2."""
+    wave = plane_wave(generator, (0.0, k2))
+    phi = generator.stationary @ wave
+    by_k = generator.stationary @ wave_derivative(generator, k2)
+    return np.array([phi, *(generator.stationary_derivatives @ wave), by_k]).real
 
 
 @singledispatch
