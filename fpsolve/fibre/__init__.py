@@ -4,6 +4,7 @@ from fpsolve.fibre.air import AirFlow
 from fpsolve.fibre.drag import drag_coefficients, drag_force, drag_resistances
 from fpsolve.fibre.ends import Clamped, Free, Hinged
 from fpsolve.fibre.motion import Motion, simulate
+from fpsolve.fibre.random_force import RandomForce
 from fpsolve.fibre.rest import Equilibrium, equilibrium
 from fpsolve.fibre.string import String
 from fpsolve.fibre.turbulence import TurbulenceSpectrum
@@ -17,6 +18,7 @@ __all__ = [
     "Hinged",
     "Modes",
     "Motion",
+    "RandomForce",
     "String",
     "TurbulenceSpectrum",
     "drag_coefficients",

@@ -18,6 +18,7 @@ from fpsolve._support.checks import (
 )
 from fpsolve.fibre.air import AirFlow
 from fpsolve.fibre.forces import Forces
+from fpsolve.fibre.random_force import Draws, StochasticForce
 from fpsolve.fibre.shapes import checked_shape, first_shape
 from fpsolve.fibre.string import String
 from fpsolve.fibre.theta_step import ThetaStep
@@ -53,7 +54,9 @@ class Motion:
         Bound of the error of the last positions in m from the length of the steps: the
         distance to those of half as many, three times the error at order 2; with θ > ½,
         of order 1, twice the distance. Infinite for an odd number of steps, or if not
-        asked for.
+        asked for. In turbulence both are driven by the same noise, of which the motion
+        is one answer, and it is twice the distance: white noise leaves order 1 once
+        the swings that it excites are resolved, and less before.
     """
 
     string: String
@@ -90,6 +93,8 @@ def simulate(
     theta: float = 0.5,
     damping: float = 0.0,
     air: AirFlow | None = None,
+    turbulence: StochasticForce | None = None,
+    seed: int | None = None,
     save_every: int | None = None,
     estimate_error: bool = True,
 ) -> Motion:
@@ -117,6 +122,10 @@ def simulate(
         c in N s/m² on every piece of the fibre.
     air : AirFlow, optional
         What pulls at it with the force a per length, taken at the middle of every step.
+    turbulence : RandomForce or TurbulentForce, optional
+        A of A·dw_{s,t}, white noise in s and t (Itô) or correlated noise in its place.
+    seed : int, optional
+        Of `turbulence`: the same seed and step repeat the motion bit by bit.
     save_every : int, optional
         Keep positions of every so-many-th step, and of the last; by default of the
         first and the last.
@@ -162,16 +171,23 @@ def simulate(
     if not (air is None or isinstance(air, AirFlow)):
         raise TypeError(f"`air` must be an `AirFlow`, got {shown(air)}.")
     step = ThetaStep(string, t_end / n_steps, theta, damping, air)
-    motion = _motion(step, r, v, n_steps, every)
+    draws = _checked_draws(turbulence, seed, step)
+    motion = _motion(step, r, v, n_steps, every, draws)
     if not estimate_error or n_steps % 2:
         return motion
     half = n_steps // 2
-    other = _motion(replace(step, dt=2 * step.dt), r, v, half, half)
+    step = replace(step, dt=2 * step.dt)
+    if draws is not None:
+        draws = Draws(draws.law, string, air, step.dt, draws.seed, pieces=2)
+    other = _motion(step, r, v, half, half, draws)
     away = float(np.linalg.norm(other.r[-1] - motion.r[-1], axis=1).max())
-    return replace(motion, position_error=away if theta == 0.5 else 2 * away)
+    second = theta == 0.5 and draws is None
+    return replace(motion, position_error=away if second else 2 * away)
 
 
-def _motion(step: ThetaStep, r: Array, v: Array, n_steps: int, every: int) -> Motion:
+def _motion(
+    step: ThetaStep, r: Array, v: Array, n_steps: int, every: int, draws: Draws | None
+) -> Motion:
     string, forces = step.string, Forces(step.string)
     t: Array = np.arange(n_steps + 1.0) * step.dt
     series = np.zeros((5, n_steps + 1))
@@ -181,7 +197,10 @@ def _motion(step: ThetaStep, r: Array, v: Array, n_steps: int, every: int) -> Mo
     tension, iterations = np.zeros(string.n_edges), 0
     for number in range(n_steps + 1):
         if number:
-            r, v, tension, iterations = step(r, v, tension, t[number - 1])
+            began, force = t[number - 1], None
+            if draws is not None:
+                force = draws.value(number, r, v, began)
+            r, v, tension, iterations = step(r, v, tension, began, force)
         series[:, number] = (
             0.5 * string.masses @ (v**2).sum(axis=1),
             forces.energy(r),
@@ -197,6 +216,26 @@ def _motion(step: ThetaStep, r: Array, v: Array, n_steps: int, every: int) -> Mo
         string, t, kinetic, potential, largest, stretched, counted.astype(np.int64),
         t[saves], positions, velocities,
     )  # fmt: skip
+
+
+def _checked_draws(
+    turbulence: StochasticForce | None, seed: int | None, step: ThetaStep
+) -> Draws | None:
+    """What is drawn at every step; TypeError unless there is a seed for it."""
+    if (turbulence is None) != (seed is None):
+        given = "`seed`" if turbulence is None else "`turbulence`"
+        raise TypeError(
+            f"`turbulence` and `seed` must be given together, got {given} alone."
+        )
+    if turbulence is None:
+        return None
+    if not hasattr(turbulence, "amplitudes"):
+        raise TypeError(
+            f"`turbulence` must be a `RandomForce` or a `TurbulentForce`, got "
+            f"{shown(turbulence)}."
+        )
+    seed = check_integer("seed", seed, 0)
+    return Draws(turbulence, step.string, step.air, step.dt, seed)
 
 
 def _checked_velocity(string: String, r: Array, velocity: ArrayLike | None) -> Array:
