@@ -2,7 +2,9 @@
 
 from fpsolve.fibre.air import AirFlow
 from fpsolve.fibre.drag import drag_coefficients, drag_force, drag_resistances
-from fpsolve.fibre.ends import Clamped, Free, Hinged
+from fpsolve.fibre.ends import Belt, Clamped, Free, Hinged, Nozzle
+from fpsolve.fibre.laid import LayDown
+from fpsolve.fibre.laying import lay_down
 from fpsolve.fibre.motion import Motion, simulate
 from fpsolve.fibre.random_force import RandomForce
 from fpsolve.fibre.rest import Equilibrium, equilibrium
@@ -12,12 +14,15 @@ from fpsolve.fibre.vibrations import Modes, modes
 
 __all__ = [
     "AirFlow",
+    "Belt",
     "Clamped",
     "Equilibrium",
     "Free",
     "Hinged",
+    "LayDown",
     "Modes",
     "Motion",
+    "Nozzle",
     "RandomForce",
     "String",
     "TurbulenceSpectrum",
@@ -25,6 +30,7 @@ __all__ = [
     "drag_force",
     "drag_resistances",
     "equilibrium",
+    "lay_down",
     "modes",
     "simulate",
 ]

@@ -2,18 +2,26 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from fpsolve._support.arrays import Array, check_finite_numbers
-from fpsolve._support.checks import shown
+from fpsolve._support.checks import (
+    check_finite,
+    check_positive,
+    keep_checked,
+    shown,
+)
 
 __all__ = [
+    "Belt",
     "Clamped",
     "End",
     "Free",
     "Hinged",
+    "Nozzle",
     "Vector",
     "as_vector",
     "check_end",
@@ -74,6 +82,91 @@ class Clamped:
         object.__setattr__(self, "direction", tuple((direction / length).tolist()))
 
 
+@dataclass(frozen=True)
+class Nozzle(Clamped):
+    """r = x(t) + d τ, ∂_t r = x'(t) + v_in τ: fibre is spun out along `direction` τ.
+
+    x(t) = `position` + (r₁ cos(ωt + φ), r₂ sin(ωt + φ), 0): at rest, on an ellipse, or
+    to and fro. Pieces of the fibre keep the nozzle's velocity and v_in until they have
+    come out by the length of one edge, so that the place where the fibre is clamped
+    lies within half of an edge of x(t).
+
+    Parameters
+    ----------
+    position : tuple of float
+        In m, the centre of the motion.
+    direction : tuple of float
+        In which the fibre comes out, of any length but 0.
+    speed : float
+        v_in in m/s, the length of fibre per time.
+    radii : tuple of float
+        r₁ and r₂ in m, along the belt and across.
+    angular_speed : float
+        ω in rad/s.
+    phase : float
+        φ.
+
+    Raises
+    ------
+    ValueError
+        If the speed is not positive, or a number is not finite.
+
+    References
+    ----------
+    [KMW09]_, sections 2.2 and 4.1.
+    """
+
+    speed: float
+    radii: tuple[float, float] = (0.0, 0.0)
+    angular_speed: float = 0.0
+    phase: float = 0.0
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        keep_checked(self, check_positive, "speed")
+        keep_checked(self, check_finite, "angular_speed", "phase")
+        radii = check_finite_numbers("radii", self.radii)
+        if radii.shape != (2,):
+            raise ValueError(f"`radii` must be two numbers, got {shown(self.radii)}.")
+        object.__setattr__(self, "radii", tuple(radii.tolist()))
+
+    def at(self, t: float) -> tuple[Array, Array]:
+        """x(t) in m, and the velocity x'(t) + v_in τ of what comes out, in m/s."""
+        angle = self.angular_speed * t + self.phase
+        cosine, sine = math.cos(angle), math.sin(angle)
+        first, second = self.radii
+        offset = np.array([first * cosine, second * sine, 0.0])
+        moving = self.angular_speed * np.array([-first * sine, second * cosine, 0.0])
+        spun = self.speed * np.array(self.direction)
+        return np.array(self.position) + offset, moving + spun
+
+
+@dataclass(frozen=True)
+class Belt:
+    """z = `height`, moving with v_belt e₁: what touches it lies there.
+
+    A node that reaches the belt has its velocity from then on, as by friction without
+    limit; the impact is plastic. What lies cannot move, and nothing is below the belt.
+
+    Parameters
+    ----------
+    speed : float
+        v_belt in m/s.
+    height : float
+        In m.
+
+    References
+    ----------
+    [KMW09]_, section 2.2.3.
+    """
+
+    speed: float
+    height: float = 0.0
+
+    def __post_init__(self) -> None:
+        keep_checked(self, check_finite, "speed", "height")
+
+
 End = Free | Hinged | Clamped
 
 
@@ -88,8 +181,10 @@ def check_end(name: str, end: End) -> End:
 
 
 def place_of(end: End) -> Array | None:
-    """Where the end is held, or None."""
-    return None if isinstance(end, Free) else np.array(end.position)
+    """Where the end is held at time 0, or None."""
+    if isinstance(end, Free):
+        return None
+    return end.at(0.0)[0] if isinstance(end, Nozzle) else np.array(end.position)
 
 
 def as_vector(name: str, value: object) -> Vector:

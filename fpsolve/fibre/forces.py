@@ -9,7 +9,7 @@ import numpy as np
 from scipy import sparse
 
 from fpsolve._support.arrays import Array
-from fpsolve.fibre.ends import Clamped
+from fpsolve.fibre.ends import Clamped, Nozzle
 from fpsolve.fibre.string import String
 
 __all__ = ["Forces"]
@@ -40,14 +40,17 @@ class Forces:
         rows, known, weights = [inner / h**2], [np.zeros((n - 1, 3))], [h] * (n - 1)
         for held, near, sign in ((string.start, 0, 1.0), (string.end, n, -1.0)):
             if isinstance(held, Clamped):
-                # (τ of the edge − direction)/(h/2) over half an edge.
+                # (τ of the edge − direction)/(h/2) over half an edge; a nozzle holds
+                # the edge before, too, so that the bend has a whole one.
+                over = h if isinstance(held, Nozzle) else h / 2
+                slope = 1 / (h * over)
                 edge = sparse.csr_array(
-                    ([-2 / h**2, 2 / h**2], ([0, 0], [near, near + int(sign)])),
+                    ([-slope, slope], ([0, 0], [near, near + int(sign)])),
                     shape=(1, n + 1),
                 )
                 rows.append(edge)
-                known.append(2 * sign / h * np.array([held.direction]))
-                weights.append(h / 2)
+                known.append(sign / over * np.array([held.direction]))
+                weights.append(over)
         return sparse.vstack(rows, "csr"), np.concatenate(known), np.array(weights)
 
     @cached_property

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from fpsolve._support.arrays import Array, check_finite_numbers
+from fpsolve._support.arrays import Array
 from fpsolve._support.checks import (
     check_flag,
     check_integer,
@@ -17,9 +17,10 @@ from fpsolve._support.checks import (
     shown,
 )
 from fpsolve.fibre.air import AirFlow
+from fpsolve.fibre.ends import Nozzle
 from fpsolve.fibre.forces import Forces
 from fpsolve.fibre.random_force import Draws, StochasticForce
-from fpsolve.fibre.shapes import checked_shape, first_shape
+from fpsolve.fibre.shapes import checked_shape, checked_vectors, first_shape
 from fpsolve.fibre.string import String
 from fpsolve.fibre.theta_step import ThetaStep
 
@@ -168,6 +169,11 @@ def simulate(
     r = first_shape(string) if shape is None else checked_shape(string, shape)
     v = _checked_velocity(string, r, velocity)
     estimate_error = check_flag("estimate_error", estimate_error)
+    if isinstance(string.start, Nozzle) or isinstance(string.end, Nozzle):
+        raise ValueError(
+            "`string` must not be held by a nozzle, which moves and spins; `lay_down` "
+            "is for that."
+        )
     if not (air is None or isinstance(air, AirFlow)):
         raise TypeError(f"`air` must be an `AirFlow`, got {shown(air)}.")
     step = ThetaStep(string, t_end / n_steps, theta, damping, air)
@@ -242,12 +248,7 @@ def _checked_velocity(string: String, r: Array, velocity: ArrayLike | None) -> A
     """As an array of all nodes; ValueError if an edge or a held end would move."""
     if velocity is None:
         return np.zeros(r.shape)
-    v = check_finite_numbers("velocity", velocity)
-    if v.shape not in (r.shape, (3,)):
-        raise ValueError(
-            f"`velocity` must have the shape {r.shape} or (3,), got {v.shape}."
-        )
-    v = np.array(np.broadcast_to(v, r.shape))
+    v = checked_vectors("velocity", velocity, r.shape)
     held = np.setdiff1d(np.arange(r.shape[0]), string.moving)
     size = np.abs(v).max()
     if np.abs(v[held]).max(initial=0.0) > 0:

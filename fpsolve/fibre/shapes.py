@@ -11,7 +11,7 @@ from fpsolve._support.arrays import Array, check_finite_numbers
 from fpsolve.fibre.ends import Clamped, Free, place_of
 from fpsolve.fibre.string import String
 
-__all__ = ["checked_shape", "first_shape"]
+__all__ = ["checked_shape", "checked_vectors", "first_shape"]
 
 # Of the length of an edge: what a user's shape may be off.
 ROUNDING = 1e-6
@@ -53,6 +53,16 @@ def checked_shape(string: String, shape: object) -> Array:
                 f"{tuple(node.tolist())}."
             )
     return r
+
+
+def checked_vectors(name: str, value: object, shape: tuple[int, ...]) -> Array:
+    """One vector for every node, or for all of them, as an array of them."""
+    found = check_finite_numbers(name, value)
+    if found.shape not in (shape, (3,)):
+        raise ValueError(
+            f"`{name}` must have the shape {shape} or (3,), got {found.shape}."
+        )
+    return np.array(np.broadcast_to(found, shape))
 
 
 def _direction(string: String) -> Array:

@@ -15,7 +15,7 @@ from fpsolve.fibre.forces import Forces
 from fpsolve.fibre.newton import Wind, found_step
 from fpsolve.fibre.string import String
 
-__all__ = ["ThetaStep"]
+__all__ = ["ThetaStep", "string_chain"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,24 +46,13 @@ class ThetaStep:
     air: AirFlow | None = None
 
     @cached_property
-    def _forces(self) -> Forces:
-        return Forces(self.string)
-
-    @cached_property
     def _held(self) -> NDArray[np.int64]:
         nodes = np.arange(self.string.n_edges + 1)
         return np.setdiff1d(nodes, self.string.moving)
 
     @cached_property
     def _chain(self) -> Chain:
-        """The string as kernels know it, its held ends fixed."""
-        string, bending = self.string, np.zeros((self.string.n_edges + 1, 5))
-        for apart in (-2, -1, 0, 1, 2):
-            rows = slice(max(-apart, 0), string.n_edges + 1 - max(apart, 0))
-            bending[rows, apart + 2] = self._forces.bending.diagonal(apart)
-        fixed = np.zeros((string.n_edges + 1, 3), dtype=bool)
-        fixed[self._held] = True
-        return Chain(bending, self._forces.constant, string.masses, fixed, string.edge)
+        return string_chain(self.string)
 
     def __call__(
         self, r: Array, v: Array, tension: Array, t: float, force: Array | None = None
@@ -87,3 +76,15 @@ class ThetaStep:
         return (
             r + iterate.moved, v + (rate - v) / self.theta, iterate.tension, iterations
         )  # fmt: skip
+
+
+def string_chain(string: String) -> Chain:
+    """The string as kernels know it, its held ends fixed."""
+    forces, nodes = Forces(string), string.n_edges + 1
+    bending = np.zeros((nodes, 5))
+    for apart in (-2, -1, 0, 1, 2):
+        rows = slice(max(-apart, 0), nodes - max(apart, 0))
+        bending[rows, apart + 2] = forces.bending.diagonal(apart)
+    fixed = np.ones((nodes, 3), dtype=bool)
+    fixed[string.moving] = False
+    return Chain(bending, forces.constant, string.masses, fixed, string.edge)

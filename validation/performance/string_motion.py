@@ -1,7 +1,7 @@
 """What the motion of a string costs: an iteration of Newton's method, and a step.
 
-Claims: an iteration, with its share of the series of a step, takes less than three times
-what it took on an idle core of 2 GHz; a shared machine is allowed the rest.
+Claims: an iteration, with its share of the series of a step, takes less than three
+times what it took on a core of 2 GHz; a shared machine is allowed the rest.
 """
 
 from __future__ import annotations

@@ -1,0 +1,244 @@
+"""A fibre that is spun from a nozzle and laid on a belt."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from fpsolve._support.arrays import Array
+from fpsolve._support.checks import (
+    check_flag,
+    check_integer,
+    check_kind,
+    check_positive,
+    check_real,
+    shown,
+)
+from fpsolve.errors import EdgeLengthError
+from fpsolve.fibre.air import AirFlow
+from fpsolve.fibre.ends import Belt, Free, Nozzle
+from fpsolve.fibre.fed_chain import FedChain, FedStep
+from fpsolve.fibre.laid import LayDown
+from fpsolve.fibre.rest import equilibrium
+from fpsolve.fibre.shapes import checked_shape, checked_vectors
+from fpsolve.fibre.string import String
+
+__all__ = ["lay_down"]
+
+# A step that is not found is taken in halves, and these again.
+MOST_HALVINGS = 12
+# Of an edge: a fibre that is nowhere further from a vertical line is straight.
+STRAIGHT = 1e-9
+
+
+def lay_down(
+    string: String,
+    t_end: float,
+    n_steps: int,
+    *,
+    belt: Belt | None = None,
+    shape: ArrayLike | None = None,
+    velocity: ArrayLike | None = None,
+    theta: float = 0.6,
+    air: AirFlow | None = None,
+    save_every: int | None = None,
+    estimate_error: bool = True,
+) -> LayDown:
+    """ρA ∂_tt r = ∂_s(T ∂_s r − ∂_s(EI ∂_ss r)) + ρA g + a, fed at v_in, z ≥ height.
+
+    The fibre is spun out of the nozzle that is the string's start: edges of the fixed
+    length h follow each other with the velocity of the nozzle and v_in along its
+    direction, and are let go as they leave it, so that neither their momentum nor their
+    bending jumps, and v_in t of fibre have come out at time t. Nodes that reach the
+    belt stick to it. Between both the motion is that of `simulate`: edges keep their
+    length to 1e-12. Of order 1 in the step, in which a node lands sooner or later, and
+    in the edges. Loops that meet do not notice each other.
+
+    A step that Newton's method does not find, as where a fibre buckles, is taken in two
+    halves, and these again, so that it depends on nothing but the arguments.
+
+    Parameters
+    ----------
+    string : String
+        The fibre that hangs from the nozzle at the beginning: its start is a `Nozzle`,
+        its end free.
+    t_end : float
+        In s; the motion begins at 0.
+    n_steps : int
+    belt : Belt, optional
+        On which it is laid; by default none, and the fibre becomes longer and longer.
+    shape : array_like, shape (n_edges + 1, 3), optional
+        Positions at the beginning; by default those at rest. Nodes at the height of the
+        belt lie on it, and none is below.
+    velocity : array_like, shape (n_edges + 1, 3) or (3,), optional
+        At the beginning, in m/s; by default that of the nozzle and of what comes out of
+        it. What would stretch an edge is taken from it as by a plastic impact.
+    theta : float
+        From ½ to 1; ½ adds no damping, and with a belt what an impact excites stays.
+    air : AirFlow, optional
+        What pulls at it with the force a per length.
+    save_every : int, optional
+        Keep the fibre in the air at every so-many-th step, and at the last; by default
+        at the first and the last.
+    estimate_error : bool
+        Repeat the motion with half of the steps, for `position_error`.
+
+    Returns
+    -------
+    LayDown
+
+    Raises
+    ------
+    ValueError
+        If a number is out of its range, the start is no nozzle, the shape does not fit
+        the fibre, lies below the belt, or hangs so straight that it could buckle to any
+        side.
+    TypeError
+        If an argument is of another kind.
+    FlowRangeError
+        If the fibre leaves the table of the air.
+    EdgeLengthError
+        If Newton's method does not converge, however short the step is, as for a belt
+        that pulls at a straight fibre faster than it is spun.
+
+    References
+    ----------
+    [KMW09]_, section 2.2.
+    """
+    t_end = check_positive("t_end", t_end)
+    n_steps = check_integer("n_steps", n_steps, 1)
+    every = n_steps
+    if save_every is not None:
+        every = check_integer("save_every", save_every, 1)
+    step = _checked_step(string, belt, theta, air)
+    first = _first_chain(step, shape, velocity)
+    estimate_error = check_flag("estimate_error", estimate_error)
+    found = _Run(step, t_end, n_steps, every).result(first)
+    if not estimate_error or n_steps % 2:
+        return found
+    other = _Run(step, t_end, n_steps // 2, n_steps).result(first)
+    return replace(found, position_error=2 * found.distance(other))
+
+
+def _checked_step(
+    string: String, belt: Belt | None, theta: float, air: AirFlow | None
+) -> FedStep:
+    """ValueError or TypeError unless these may go together."""
+    check_kind("string", string, String, "String(length, …, start=Nozzle(…)) is one")
+    if not isinstance(string.start, Nozzle) or not isinstance(string.end, Free):
+        raise ValueError(
+            "`string` must have a `Nozzle` as its start and a free end, got "
+            f"{shown(string.start)} and {shown(string.end)}."
+        )
+    theta = check_real("theta", theta)
+    if not 0.5 <= theta <= 1:
+        raise ValueError(f"`theta` must lie between 0.5 and 1, got {theta:g}.")
+    if belt is not None:
+        check_kind("belt", belt, Belt, "Belt(speed) is one")
+    if air is not None:
+        check_kind("air", air, AirFlow, "AirFlow(velocity) is one")
+    return FedStep(string, belt, theta, air)
+
+
+def _first_chain(
+    step: FedStep, shape: ArrayLike | None, velocity: ArrayLike | None
+) -> FedChain:
+    """The fibre at the beginning; ValueError unless it may be laid from there."""
+    string, n = step.string, step.string.n_edges
+    r = equilibrium(string).r if shape is None else checked_shape(string, shape)
+    laid, on_belt = np.zeros(n + 1, dtype=bool), np.full((n + 1, 3), np.nan)
+    v = np.empty((n + 1, 3))
+    v[:] = step.nozzle.at(0.0)[1]
+    if velocity is not None:
+        v[1:] = checked_vectors("velocity", velocity, v.shape)[1:]
+    if step.belt is not None:
+        _check_height(step, r)
+        laid[1:] = r[1:, 2] == step.belt.height
+        on_belt[laid] = r[laid] * [1.0, 1.0, 0.0]
+        v[laid] = [step.belt.speed, 0.0, 0.0]
+    return FedChain(
+        np.array(r), step.arrested(r, v, laid), np.zeros(n), laid, on_belt, n
+    )
+
+
+def _check_height(step: FedStep, r: Array) -> None:
+    """ValueError if the fibre is below the belt, or may buckle to any side."""
+    assert step.belt is not None
+    lowest, height = float(r[:, 2].min()), step.belt.height
+    if not (lowest >= height and r[0, 2] > height):
+        raise ValueError(
+            f"`shape` must not be below the belt at {height:g} m, nor the nozzle on "
+            f"it, got a height of {lowest:g}; shorten the fibre or raise the nozzle."
+        )
+    aside = np.ptp(r[:, :2], axis=0).max()
+    still = not any(step.nozzle.radii) and step.air is None
+    if still and not aside > STRAIGHT * step.string.edge:
+        raise ValueError(
+            "`string` must not hang straight above the belt, where nothing says to "
+            "which side it buckles; tilt the `direction` of its nozzle a little."
+        )
+
+
+@dataclass(eq=False)
+class _Run:
+    """Steps one after the other, and what is kept of them."""
+
+    step: FedStep
+    t_end: float
+    n_steps: int
+    every: int
+    iterations: int = field(default=0, init=False)
+    rejected: int = field(default=0, init=False)
+
+    def result(self, chain: FedChain) -> LayDown:
+        """What `lay_down` returns."""
+        t = np.linspace(0.0, self.t_end, self.n_steps + 1)
+        series = np.zeros((6, t.size))
+        series[:, 0] = self._seen(chain)
+        behind, shapes, saved = [], [chain.r], [0]
+        for number in range(1, t.size):
+            self.iterations = self.rejected = 0
+            chain = self._advanced(chain, t[number - 1], t[number] - t[number - 1], 0)
+            series[:, number] = self._seen(chain)
+            chain, left = chain.trimmed()
+            behind.append(left)
+            if number % self.every == 0 or number == t.size - 1:
+                shapes.append(chain.r)
+                saved.append(number)
+        landed = np.concatenate([*behind, chain.lying])
+        kinetic, tension, stretched, free, iterations, rejected = series
+        counted = np.array([iterations, rejected], dtype=np.int64)
+        return LayDown(
+            self.step.string, self.step.belt, t, kinetic, tension, stretched, free,
+            counted[0], counted[1], landed[:, :2], landed[:, 2], t[saved],
+            tuple(shapes), chain,
+        )  # fmt: skip
+
+    def _advanced(self, chain: FedChain, t: float, dt: float, depth: int) -> FedChain:
+        """At t + dt, in one step or in halves of it."""
+        try:
+            new, iterations = self.step(chain, t, dt)
+        except EdgeLengthError:
+            if depth == MOST_HALVINGS:
+                raise
+            self.rejected += 1
+            half = self._advanced(chain, t, 0.5 * dt, depth + 1)
+            return self._advanced(half, t + 0.5 * dt, 0.5 * dt, depth + 1)
+        self.iterations += iterations
+        return self.step.after_feeding(new, t + dt)
+
+    def _seen(self, chain: FedChain) -> tuple[float, ...]:
+        """The series at one time."""
+        string, air = self.step.string, ~chain.laid
+        masses = self.step.numbers(chain.tension.size).masses
+        lengths = np.linalg.norm(np.diff(chain.r, axis=0), axis=1)
+        return (
+            0.5 * masses[air] @ (chain.v[air] ** 2).sum(axis=1),
+            float(np.abs(chain.tension).max()),
+            float(np.abs(lengths / string.edge - 1).max()),
+            string.edge * float((air[:-1] | air[1:]).sum()),
+            self.iterations,
+            self.rejected,
+        )

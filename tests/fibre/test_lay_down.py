@@ -1,0 +1,354 @@
+"""A fibre that is spun and laid: what is fed, what lies, the catenary between."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+
+import fpsolve as fp
+from fpsolve._kernels.impact import arrest
+from fpsolve.fibre import AirFlow, Belt, Clamped, Free, Nozzle, String, lay_down
+from fpsolve.fibre.fed_chain import FedChain, FedStep, put_down
+
+THREAD = {"diameter": 2e-4, "density": 1000.0}
+TILTED = (0.1, 0.03, -1.0)
+NOWHERE = (0.0, 0.0, 0.0)
+
+
+def orders(errors):
+    errors = np.array(errors)
+    return np.log2(errors[:-1] / errors[1:])
+
+
+def hanging(nozzle, stiffness=1e7, length=0.2, n_edges=10, **options):
+    return String(length, **THREAD, youngs_modulus=stiffness, start=nozzle, end=Free(),
+                  n_edges=n_edges, **options)  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def coiled():
+    """2.5 m of a fibre laid in loops on a belt of a third of its speed."""
+    string = hanging(Nozzle((0, 0, 0.3), TILTED, 1.0), 1e8, n_edges=20)
+    return lay_down(
+        string, 2.5, 1250, belt=Belt(0.3, height=0.05), save_every=10,
+        estimate_error=False,
+    )  # fmt: skip
+
+
+def test_a_fibre_that_is_fed_straight_down_hangs_by_its_weight():
+    string = hanging(Nozzle(NOWHERE, (0, 0, -1), 2.0))
+    motion = lay_down(string, 0.25, 200, estimate_error=False)
+    # 25 edges of 2 cm have come out; each moves as it did when it left the nozzle.
+    assert motion.fed == pytest.approx(0.5, rel=1e-15)
+    assert len(motion.r[-1]) == 10 + 25 + 1
+    np.testing.assert_allclose(motion.last.v, [[0, 0, -2.0]] * 36, atol=1e-11)
+    length = 0.2 + 2.0 * motion.t
+    np.testing.assert_allclose(motion.r[-1][-1], [0, 0, -0.7], atol=1e-11)
+    # Of whole edges, and half of the weight of the first node is the nozzle's.
+    edges = np.floor(length[:-1] / string.edge + 1e-9)
+    weight = string.line_density * 9.81 * string.edge * (edges - 0.5)
+    np.testing.assert_allclose(motion.largest_tension[1:], weight, rtol=1e-10)
+
+
+def test_what_comes_out_brings_its_momentum():
+    nozzle = Nozzle(NOWHERE, (0.6, 0, -0.8), 1.0, (0.05, 0.02), 30.0)
+    string = hanging(nozzle, stiffness=0.0)
+    step = FedStep(string, None, 0.6, None)
+    r = string.s[:, None] * np.array(nozzle.direction) + nozzle.at(0.0)[0]
+    v = np.tile(nozzle.at(0.0)[1], (11, 1))
+    chain = FedChain(
+        r, v, np.zeros(10), np.zeros(11, bool), np.full((11, 3), np.nan), 10
+    )
+    mass, dt = string.line_density * string.edge, 1e-3
+    worst, momentum, given = 0.0, mass * v[1:].sum(axis=0) - mass * v[-1] / 2, 0.0
+    for number in range(100):
+        new, _ = step(chain, number * dt, dt)
+        # The scheme changes momentum by mean velocities, θ of the new and the rest of
+        # the old, and by the pull of the nozzle along its edge in between.
+        masses = step.numbers(new.tension.size).masses[1:, None]
+        middle = 0.6 * new.r + 0.4 * chain.r
+        pull = -new.tension[0] * (middle[1] - middle[0]) / string.edge
+        weight = masses.sum() * np.array([0, 0, -9.81])
+        given = given + dt * (pull + weight)
+        fed = step.after_feeding(new, (number + 1) * dt)
+        if fed is not new:
+            given = given + mass * nozzle.at((number + 1) * dt)[1]
+        chain = fed
+        masses = step.numbers(chain.tension.size).masses[1:, None]
+        found = (masses * chain.v[1:]).sum(axis=0)
+        worst = max(worst, np.abs(found - momentum - given).max())
+    assert chain.newest == 15
+    # Residuals of Newton's method: 1e-9 of an edge over a step, of the chain's mass.
+    assert worst < 1e-9 * 15 * mass
+    # It has swung meanwhile.
+    assert np.abs(chain.v[1:, 1]).max() > 0.1
+
+
+def test_every_piece_of_the_fibre_is_in_the_nozzle_in_the_air_or_on_the_belt(coiled):
+    last, string = coiled.last, coiled.string
+    assert last.newest == string.n_edges + 250
+    # Up to the last node in the air, that in the nozzle being the first.
+    in_air = np.flatnonzero(~last.laid)[-1] + 1
+    assert len(coiled.landed) + in_air == last.newest + 1
+    assert coiled.free_length[-1] < 0.5
+    assert coiled.rejected.sum() < 10
+
+
+def test_edges_keep_their_length_in_the_air_and_on_the_belt(coiled):
+    assert coiled.stretched.max() <= 1e-12
+    edges = np.linalg.norm(np.diff(coiled.landed, axis=0), axis=1)
+    # Of one edge; coordinates of a metre are rounded to 1e-16.
+    assert np.abs(edges / coiled.string.edge - 1).max() < 1e-12
+
+
+def test_nothing_is_below_the_belt(coiled):
+    heights = [float(r[:, 2].min()) for r in coiled.r]
+    assert min(heights) >= 0.05
+    assert heights[-1] == 0.05
+
+
+def test_what_lies_moves_with_the_belt_and_lands_in_turn(coiled):
+    last = coiled.last
+    np.testing.assert_array_equal(
+        last.v[last.laid], [[0.3, 0, 0]] * int(last.laid.sum())
+    )
+    # Places on the belt do not change: the lab sees them move.
+    lying = last.r[last.laid] - [0.3 * coiled.t[-1], 0, 0]
+    np.testing.assert_allclose(lying[:, :2], last.on_belt[last.laid, :2], atol=1e-15)
+    # Loops may land before what hangs behind them, by less than two turns.
+    assert np.diff(coiled.landing_times).min() > -0.1
+    assert coiled.landing_times[-1] > 2.4
+
+
+def test_the_laid_curve_lies_about_where_the_nozzle_was(coiled):
+    curve = coiled.laid_curve(skip=0.5)
+    assert curve.ds == coiled.string.edge
+    assert curve.curve == fp.MovingBelt(0.3)
+    assert curve.s_start[0] > 0.5
+    (xi,) = curve.deviations
+    np.testing.assert_allclose(xi.mean(axis=0), 0.0, atol=1e-12)
+    # Loops of three centimetres, no drift over 2 m of fibre.
+    assert np.abs(xi).max() < 0.1
+    assert fp.studies.functional(curve)
+
+
+def test_a_moving_nozzle_is_the_reference_curve_of_what_it_lays():
+    nozzle = Nozzle((0, 0, 0.15), (0, 0, -1), 1.0, (0.1, 0.05), 3.0, phase=0.3)
+    string = hanging(nozzle, length=0.1, n_edges=10)
+    motion = lay_down(string, 2.5, 1250, belt=Belt(0.2), estimate_error=False)
+    curve = motion.laid_curve(skip=0.3)
+    assert curve.curve == fp.EllipticNozzle(0.2, 0.1, 0.05, 3.0, 0.3)
+    (xi,) = curve.deviations
+    # Its loops are of a centimetre, on curves of ten and five.
+    assert np.sqrt((xi**2).mean(axis=0)).max() < 0.02
+    assert np.ptp(curve.eta[:, 1]) > 0.07
+    # Where no reference curve is known there is none.
+    fast = lay_down(
+        hanging(Nozzle((0, 0, 0.3), TILTED, 1.0)), 0.2, 100, belt=Belt(-1.0),
+        estimate_error=False,
+    )  # fmt: skip
+    with pytest.raises(ValueError, match="speed"):
+        _ = fast.reference_curve
+
+
+A, HEIGHT, SPEED = 0.1, 0.2, 1.0
+
+
+def sunk(x):
+    """The catenary z = a (cosh(x/a) − 1), which touches the belt at 0."""
+    return A * (np.cosh(np.minimum(x, 0.0) / A) - 1)
+
+
+def catenary(n_edges):
+    """Edges of one length from a height to the belt, four more on it, their length."""
+    reach = A * math.acosh(1 + HEIGHT / A)
+
+    def up(edge):
+        x = [0.0]
+        for _ in range(n_edges):
+            last = x[-1]
+
+            def off(y, last=last):
+                return math.hypot(y - last, sunk(y) - sunk(last)) - edge
+
+            x.append(brentq(off, last - edge, last, xtol=1e-16))
+        return np.array(x)
+
+    whole = math.sqrt(HEIGHT * (HEIGHT + 2 * A))
+    edge = brentq(lambda h: up(h)[-1] + reach, 0.9 * whole / n_edges,
+                  1.1 * whole / n_edges, xtol=1e-15)  # fmt: skip
+    x = np.concatenate([up(edge)[::-1], edge * np.arange(1, 5)])
+    return edge, np.stack([x, 0 * x, np.where(x < 0, sunk(x), 0.0)], axis=1)
+
+
+def test_a_chain_fed_as_fast_as_the_belt_stays_the_catenary_that_moves_along_itself():
+    # T = ρA (g (a + z) + V²): the speed adds to the tension, the shape stays.
+    errors, tensions = [], []
+    for n_edges in (8, 16, 32):
+        edge, shape = catenary(n_edges)
+        tangent = np.gradient(shape, axis=0)
+        tangent /= np.linalg.norm(tangent, axis=1, keepdims=True)
+        slope = math.sinh(math.acosh(1 + HEIGHT / A))
+        nozzle = Nozzle(tuple(shape[0]), (1.0, 0.0, -slope), SPEED)
+        string = hanging(nozzle, 0.0, edge * (n_edges + 4), n_edges + 4)
+        motion = lay_down(
+            string, 0.3, round(2.4 / edge), belt=Belt(SPEED), shape=shape,
+            velocity=SPEED * tangent, save_every=1, estimate_error=False,
+        )  # fmt: skip
+        errors.append(max(np.abs(r[:, 2] - sunk(r[:, 0])).max() for r in motion.r))
+        expected = string.line_density * (9.81 * (A + HEIGHT) + SPEED**2)
+        tensions.append(abs(motion.largest_tension[1:].mean() / expected - 1))
+    # Twice the length has been spun; nodes come in and land one at a time.
+    assert (orders(errors) > 1.7).all(), errors
+    assert errors[-1] < 2.5e-4
+    assert (orders(tensions) > 0.4).all(), tensions
+    assert tensions[-1] < 0.04
+
+
+def test_an_arrest_is_the_nearest_motion_that_stretches_no_edge():
+    rng = np.random.default_rng(7)
+    r, v = rng.normal(size=(2, 8, 3))
+    masses, held = rng.uniform(1, 2, 8), np.zeros(8, dtype=bool)
+    held[[0, 4, 5]] = True
+    edges = np.diff(r, axis=0)
+    rows = np.zeros((7, 8, 3))
+    rows[np.arange(7), np.arange(7)] = -edges
+    rows[np.arange(7), np.arange(1, 8)] = edges
+    # By least squares in the velocities that may change, without the edge that is held.
+    counted = [0, 1, 2, 3, 5, 6]
+    free = np.repeat(~held, 3)
+    inner = rows.reshape(7, -1)[counted][:, free]
+    weights = np.repeat(masses, 3)[free]
+    wrong = rows.reshape(7, -1)[counted] @ v.ravel()
+    impulses = np.linalg.solve(inner @ (inner / weights).T, -wrong)
+    expected = v.ravel().copy()
+    expected[free] += (inner.T @ impulses) / weights
+    for function in (arrest, arrest.py_func):
+        found = v.copy()
+        function(r, masses, held, found)
+        np.testing.assert_allclose(found.ravel(), expected, atol=1e-13)
+
+
+def test_the_same_arguments_lay_the_same_fibre_to_the_last_bit():
+    string = hanging(Nozzle((0, 0, 0.22), TILTED, 1.0), length=0.2)
+    first, second = (
+        lay_down(string, 0.3, 30, belt=Belt(0.3), air=AirFlow((0.1, 0, -0.5)))
+        for _ in range(2)
+    )
+    assert first.rejected.sum() > 0
+    np.testing.assert_array_equal(first.landed, second.landed)
+    np.testing.assert_array_equal(first.last.r, second.last.r)
+    assert first.position_error == second.position_error > 0
+
+
+def test_the_error_covers_what_shorter_steps_change_before_anything_buckles():
+    nozzle = Nozzle((0, 0, 0.3), (0, 0, -1), 1.0, (0.02, 0.0), 10.0)
+    string = hanging(nozzle, n_edges=10)
+    exact = lay_down(string, 0.1, 1600, estimate_error=False)
+    motions = [lay_down(string, 0.1, n) for n in (50, 100, 200)]
+    errors = [one.distance(exact) for one in motions]
+    # Of order 1 with θ = 0.6, less what 1600 steps are off themselves.
+    assert ((orders(errors) > 0.9) & (orders(errors) < 1.4)).all(), errors
+    for motion, error in zip(motions, errors, strict=True):
+        assert error <= motion.position_error < 4 * error
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (
+            lambda: lay_down(hanging(Clamped(NOWHERE, (0, 0, -1))), 1.0, 2),
+            "`string` must have a `Nozzle` as its start and a free end",
+        ),
+        (lambda: Nozzle(NOWHERE, (0, 0, -1), 0.0), "`speed` must be positive"),
+        (
+            lambda: Nozzle(NOWHERE, (0, 0, -1), 1.0, (1.0, math.nan)),
+            "`radii` must",
+        ),
+        (
+            lambda: Nozzle(NOWHERE, (0, 0, -1), 1.0, (1.0, 2.0, 3.0)),
+            "`radii` must be two numbers",
+        ),
+        (lambda: Belt(math.inf), "`speed` must be finite"),
+        (
+            lambda: lay_down(
+                hanging(Nozzle((0, 0, 0.1), TILTED, 1.0)), 1.0, 2, belt=Belt(0.1)
+            ),
+            "`shape` must not be below the belt at 0 m",
+        ),
+        (
+            lambda: lay_down(
+                hanging(Nozzle((0, 0, 1), (0, 0, -1), 1.0)), 1.0, 2, belt=Belt(0.1)
+            ),
+            "`string` must not hang straight above the belt.* tilt",
+        ),
+        (
+            lambda: lay_down(hanging(Nozzle(NOWHERE, TILTED, 1.0)), 1.0, 2, theta=0.4),
+            "`theta` must lie between 0.5 and 1, got 0.4",
+        ),
+        (
+            lambda: lay_down(
+                hanging(Nozzle(NOWHERE, TILTED, 1.0)), 1.0, 2, velocity=[1.0]
+            ),
+            r"`velocity` must have the shape \(11, 3\) or",
+        ),
+        (
+            lambda: fp.fibre.simulate(hanging(Nozzle(NOWHERE, TILTED, 1.0)), 1.0, 2),
+            "`string` must not be held by a nozzle.* `lay_down`",
+        ),
+        (
+            lambda: lay_down(
+                hanging(Nozzle((0, 0, 0.3), TILTED, 1.0)), 0.1, 50, belt=Belt(0.1)
+            ).laid_curve(skip=0.1),
+            "`skip` must leave five nodes on the belt, got 0.1 m of",
+        ),
+    ],
+)
+def test_what_cannot_be_laid_is_refused(call, message):
+    with pytest.raises(ValueError, match=message):
+        call()
+
+
+@pytest.mark.parametrize("options", [{"belt": 0.3}, {"air": (1.0, 0, 0)}])
+def test_what_is_of_another_kind_is_refused(options):
+    with pytest.raises(TypeError, match=f"`{next(iter(options))}` must be"):
+        lay_down(hanging(Nozzle((0, 0, 1), TILTED, 1.0)), 1.0, 2, **options)
+
+
+def test_a_soft_fibre_heaps_on_a_belt_at_rest_and_keeps_its_length():
+    # Edges are as long as its loops: nodes come to lie on each other, and between.
+    string = hanging(Nozzle((0, 0, 0.3), TILTED, 1.0), n_edges=20)
+    motion = lay_down(string, 0.9, 600, belt=Belt(0.0), estimate_error=False)
+    last = motion.last
+    # What stands in arcs is kept, with all that lies before it.
+    assert last.laid.sum() + len(motion.landed) > 60
+    assert motion.stretched.max() <= 1e-12
+    assert np.abs(last.r[last.laid]).max() < 0.1
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "last", "expected"),
+    [
+        # Two edges of 5 over a distance of 6, on the side of the node.
+        ((0, 0), (3.0, 1.0, 4.0), (6, 0), (3, 4)),
+        ((0, 0), (3.0, -1.0, 4.0), (6, 0), (3, -4)),
+        # Both ends at one place, and stretched to the whole.
+        ((1, 1), (1.0, 3.0, 1.0), (1, 1), (1, 6)),
+        ((0, 0), (5.0, 0.0, 0.0), (10, 0), (5, 0)),
+        ((0, 0), (3.0, 0.0, 4.0), (6, 0), (3, 4)),
+        ((0, 0), (0.0, 0.0, 5.0), (0, 0), (5, 0)),
+    ],
+)
+def test_a_node_between_two_that_lie_is_put_down_beside_them(
+    first, second, last, expected
+):
+    three = np.array([(*first, 0.0), second, (*last, 0.0)], dtype=float)
+    found = put_down(three, 5.0)
+    np.testing.assert_allclose(found, [*expected, 0.0], atol=1e-15)
+
+
+def test_a_belt_that_tears_at_the_fibre_stops_the_run():
+    string = hanging(Nozzle((0, 0, 0.25), TILTED, 1.0))
+    with pytest.raises(fp.EdgeLengthError, match="take more `n_steps`"):
+        lay_down(string, 2.0, 500, belt=Belt(3.0), estimate_error=False)
