@@ -34,13 +34,14 @@ _NUMBERS = (
 _INTEGERS = (
     "n_paths", "n_steps", "n_cells", "kept", "agrees", "quick", "signed",
     "fpsolve_format", "n_energies", "extrapolated", "n_webs",
+    "newest",
 )  # fmt: skip
 # JSON: objects, and what is known of their entries.
 _TABLES = (
     "model", "grid", "scheme", "initial", "potential", "p0", "settings", "options",
     "solver", "sampler", "versions", "environment", "provenance", "call",
     "fpsolve_checksums", "process", "web", "curve",
-    "undetermined",
+    "undetermined", "string", "belt",
 )  # fmt: skip
 _LISTS = (
     "saved_steps", "truncation", "sectors", "fpsolve_attributes", "nozzle_phases",

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from scipy.interpolate import RegularGridInterpolator
@@ -60,6 +60,8 @@ class AirFlow:
     [KMW09]_, equation (5); [MW11]_.
     """
 
+    _recorded: ClassVar[str] = "air"
+
     velocity: Vector | Field
     density: float = 1.2
     viscosity: float = 1.5e-5
@@ -70,6 +72,10 @@ class AirFlow:
         keep_checked(self, check_slenderness, "slenderness")
         if not callable(self.velocity):
             keep_checked(self, as_vector, "velocity")
+
+    def _recorded_parts(self) -> dict[str, Any]:
+        """The parameters; a table or a function stays what it is."""
+        return {one.name: getattr(self, one.name) for one in fields(self)}
 
     @classmethod
     def from_dataset(cls, table: xr.Dataset, **options: Any) -> AirFlow:

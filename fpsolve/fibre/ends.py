@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
@@ -160,11 +161,17 @@ class Belt:
     [KMW09]_, section 2.2.3.
     """
 
+    _recorded: ClassVar[str] = "belt"
+
     speed: float
     height: float = 0.0
 
     def __post_init__(self) -> None:
         keep_checked(self, check_finite, "speed", "height")
+
+    def to_dict(self) -> dict[str, float]:
+        """The parameters, as JSON holds them."""
+        return {"speed": self.speed, "height": self.height}
 
 
 End = Free | Hinged | Clamped

@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fpsolve._support.arrays import Array
 from fpsolve._support.checks import check_non_negative
+from fpsolve.evolution.call import Call
+from fpsolve.evolution.saved import Saved
 from fpsolve.fibre.ends import Belt, Nozzle
 from fpsolve.fibre.fed_chain import FedChain
+from fpsolve.fibre.layouts import LAY_DOWN
 from fpsolve.fibre.string import String
 from fpsolve.model.curves.belts import FixedBelt, MovingBelt
 from fpsolve.model.curves.curve import Curve
@@ -20,8 +24,8 @@ from fpsolve.paths.fibres.fibre_curve import FibreCurve
 __all__ = ["LayDown"]
 
 
-@dataclass(frozen=True, eq=False)
-class LayDown:
+@dataclass(frozen=True, eq=False, repr=False)
+class LayDown(Saved):
     """A fibre on the belt and in the air: series at every step, and where it lies.
 
     Attributes
@@ -56,7 +60,14 @@ class LayDown:
         length of the steps: twice the distance to those of half as many, for order 1.
         Infinite for an odd number of steps, or if not asked for. Where loops form by
         buckling, small changes grow, and it is as large as they are.
+    call : Call or None
+        How the result was made.
+    provenance : dict
+        By which versions, where and when.
     """
+
+    kind: ClassVar[str] = "fibre-lay-down"
+    layout = LAY_DOWN
 
     string: String
     belt: Belt | None
@@ -71,16 +82,19 @@ class LayDown:
     landing_times: Array
     saved: Array
     r: tuple[Array, ...]
-    last: FedChain = field(repr=False)
+    last: FedChain
     position_error: float = np.inf
+    call: Call | None = field(default=None, kw_only=True)
+    provenance: dict[str, Any] = field(default_factory=dict, kw_only=True)
 
     @property
     def fed(self) -> float:
         """v_in t, the length of fibre that has come out since the beginning, in m."""
-        return float(self._nozzle.speed * self.t[-1])
+        return float(self.nozzle.speed * self.t[-1])
 
     @property
-    def _nozzle(self) -> Nozzle:
+    def nozzle(self) -> Nozzle:
+        """That of the string."""
         assert isinstance(self.string.start, Nozzle)
         return self.string.start
 
@@ -93,7 +107,7 @@ class LayDown:
         ValueError
             If the belt is as fast as the fibre is spun, or faster.
         """
-        nozzle = self._nozzle
+        nozzle = self.nozzle
         speed = 0.0 if self.belt is None else self.belt.speed / nozzle.speed
         if any(nozzle.radii) and nozzle.angular_speed:
             return EllipticNozzle(
@@ -133,7 +147,7 @@ class LayDown:
             )
         eta, times = self.landed[first:], self.landing_times[first:]
         numbers = np.arange(first, len(self.landed))
-        start = float(np.mean(self._nozzle.speed * times - ds * numbers)) + ds * first
+        start = float(np.mean(self.nozzle.speed * times - ds * numbers)) + ds * first
         curve = self.reference_curve
         gamma = np.stack(curve.position(start + ds * np.arange(len(eta))), axis=-1)
         centred = eta - (eta - gamma).mean(axis=0)

@@ -17,6 +17,7 @@ from fpsolve._support.checks import (
     shown,
 )
 from fpsolve.errors import EdgeLengthError
+from fpsolve.evolution.call import recorded
 from fpsolve.fibre.air import AirFlow
 from fpsolve.fibre.ends import Belt, Free, Nozzle
 from fpsolve.fibre.fed_chain import FedChain, FedStep
@@ -33,6 +34,7 @@ MOST_HALVINGS = 12
 STRAIGHT = 1e-9
 
 
+@recorded()
 def lay_down(
     string: String,
     t_end: float,

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,9 +17,12 @@ from fpsolve._support.checks import (
     check_real,
     shown,
 )
+from fpsolve.evolution.call import Call, recorded
+from fpsolve.evolution.saved import Saved
 from fpsolve.fibre.air import AirFlow
 from fpsolve.fibre.ends import Nozzle
 from fpsolve.fibre.forces import Forces
+from fpsolve.fibre.layouts import MOTION
 from fpsolve.fibre.random_force import Draws, StochasticForce
 from fpsolve.fibre.shapes import checked_shape, checked_vectors, first_shape
 from fpsolve.fibre.string import String
@@ -30,8 +34,8 @@ __all__ = ["Motion", "simulate"]
 RIGID = 1e-9
 
 
-@dataclass(frozen=True, eq=False)
-class Motion:
+@dataclass(frozen=True, eq=False, repr=False)
+class Motion(Saved):
     """What a fibre did: series at every step, positions and velocities where saved.
 
     Attributes
@@ -58,7 +62,14 @@ class Motion:
         asked for. In turbulence both are driven by the same noise, of which the motion
         is one answer, and it is twice the distance: white noise leaves order 1 once
         the swings that it excites are resolved, and less before.
+    call : Call or None
+        How the result was made.
+    provenance : dict
+        By which versions, where and when.
     """
+
+    kind: ClassVar[str] = "fibre-motion"
+    layout = MOTION
 
     string: String
     t: Array
@@ -71,6 +82,8 @@ class Motion:
     r: Array
     v: Array
     position_error: float = np.inf
+    call: Call | None = field(default=None, kw_only=True)
+    provenance: dict[str, Any] = field(default_factory=dict, kw_only=True)
 
     @property
     def energy(self) -> Array:
@@ -84,6 +97,7 @@ class Motion:
         )
 
 
+@recorded()
 def simulate(
     string: String,
     t_end: float,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import Protocol
+from typing import Any, ClassVar, Protocol
 
 import numpy as np
 
@@ -55,18 +55,24 @@ class RandomForce:
     [KMW09]_, equation (5) and remark 2.5.
     """
 
+    _recorded: ClassVar[str] = "random_force"
+
     amplitude: float
     correlation_time: float = 0.0
 
     def __post_init__(self) -> None:
         keep_checked(self, check_non_negative, "amplitude", "correlation_time")
 
+    def to_dict(self) -> dict[str, Any]:
+        """The parameters, as JSON holds them."""
+        return {"amplitude": self.amplitude, "correlation_time": self.correlation_time}
+
     def amplitudes(
         self, string: String, air: AirFlow | None, r: Array, v: Array, t: float
     ) -> Array:
         """A times the identity at every node, shape (n_edges + 1, 3, 3)."""
         shape = (string.n_edges + 1, 3, 3)
-        return np.broadcast_to(self.amplitude * np.eye(3), shape)
+        return np.asarray(np.broadcast_to(self.amplitude * np.eye(3), shape))
 
 
 @dataclass(eq=False)
@@ -123,7 +129,7 @@ class Draws:
         """Of the noise over one piece; the process moves on to the end of it."""
         dt, time = self.dt / self.pieces, self.law.correlation_time
         if not time:
-            return self._normal(number)[0] / math.sqrt(dt)
+            return np.asarray(self._normal(number)[0] / math.sqrt(dt))
         mean, moved = correlated_step(dt, time)
         given = np.concatenate([self._process[None], self._normal(number)])
         self._process = np.asarray(np.tensordot(moved, given, 1))

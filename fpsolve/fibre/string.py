@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +18,7 @@ from fpsolve._support.checks import (
     check_positive,
     keep_checked,
 )
+from fpsolve.fibre.dictionaries import end_from_dict, end_to_dict
 from fpsolve.fibre.ends import (
     Clamped,
     End,
@@ -74,6 +77,8 @@ class String:
     [KMW09]_, equation (4).
     """
 
+    _recorded: ClassVar[str] = "string"
+
     length: float
     diameter: float
     density: float
@@ -131,6 +136,23 @@ class String:
         """Places of the nodes that are not held."""
         held = [place_of(one) is not None for one in (self.start, self.end)]
         return np.arange(self.n_edges + 1)[held[0] : self.n_edges + 1 - held[1]]
+
+    def to_dict(self) -> dict[str, Any]:
+        """The parameters, as JSON holds them."""
+        about = {one.name: getattr(self, one.name) for one in fields(self)}
+        ends = {name: end_to_dict(about[name]) for name in ("start", "end")}
+        return {**about, **ends}
+
+    @classmethod
+    def from_dict(cls, about: Mapping[str, Any]) -> String:
+        """The fibre; ValueError unless it is described as `to_dict` does."""
+        names = [one.name for one in fields(cls)]
+        if sorted(about) != sorted(names):
+            raise ValueError(
+                f"a fibre must have {', '.join(names)}, got {', '.join(about)}."
+            )
+        ends = {name: end_from_dict(about[name]) for name in ("start", "end")}
+        return cls(**{**about, **ends})
 
     def coarser(self) -> String:
         """The same fibre with half of the edges."""

@@ -55,6 +55,14 @@ CAPTIONS = {
         "The beginning of the fibre on the belt, as it was measured.",
         "A fibre on the belt, and its reference curve where it is known",
     ),
+    "fibre-motion/motion": (
+        "The fibre at several times, from the side, and its energies.",
+        "Shapes of a moving fibre, and its energies over time",
+    ),
+    "fibre-lay-down/lay_down": (
+        "The fibre on the belt, in its frame; the part in the air at several times.",
+        "A fibre on a belt, and what hangs between it and the nozzle",
+    ),
     "identification/fibres": (
         "The fibre that was measured, and one of the identified model.",
         "A measured fibre and one of the model beside it",

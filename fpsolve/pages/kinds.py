@@ -16,6 +16,8 @@ PAGES: dict[str, str | Callable[[Any, str], Section]] = {
     "solution": "fpsolve.pages.solution:section",
     "paths": "fpsolve.pages.paths:section",
     "fibre-curve": "fpsolve.pages.fibre_curve:section",
+    "fibre-motion": "fpsolve.pages.fibre_motion:motion_section",
+    "fibre-lay-down": "fpsolve.pages.fibre_motion:lay_down_section",
     "hydrodynamic": "fpsolve.pages.limit_solutions:hydrodynamic_section",
     "energy": "fpsolve.pages.limit_solutions:energy_section",
     "steady-state": "fpsolve.pages.plain:steady_state",

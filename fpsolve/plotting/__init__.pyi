@@ -12,6 +12,8 @@ from .ensembles import plot_ensemble as plot_ensemble
 from .entropy import plot_entropy as plot_entropy
 from .ergodicity import plot_ergodic_averages as plot_ergodic_averages
 from .fibre_curve import plot_fibre_curve as plot_fibre_curve
+from .fibre_motion import plot_lay_down as plot_lay_down
+from .fibre_motion import plot_motion as plot_motion
 from .fibres import plot_fibre as plot_fibre
 from .fibres import plot_nozzles as plot_nozzles
 from .files import save_figures as save_figures

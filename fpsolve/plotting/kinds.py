@@ -21,6 +21,7 @@ from fpsolve.plotting.ensembles import plot_ensemble
 from fpsolve.plotting.entropy import has_entropy, plot_entropy
 from fpsolve.plotting.ergodicity import plot_ergodic_averages
 from fpsolve.plotting.fibre_curve import plot_fibre_curve
+from fpsolve.plotting.fibre_motion import plot_lay_down, plot_motion
 from fpsolve.plotting.fibres import plot_fibre
 from fpsolve.plotting.homogeneity import plot_web_homogeneity
 from fpsolve.plotting.hydrodynamic import plot_hydrodynamic
@@ -143,6 +144,8 @@ FIGURES: dict[str, Callable[[Any], Figures]] = {
         fibre=(plot_fibre, lambda p: replayed(p) and not p.model.curve.fixed),
     ),
     "fibre-curve": each(fibre=(plot_fibre_curve, always)),
+    "fibre-motion": each(motion=(plot_motion, always)),
+    "fibre-lay-down": each(lay_down=(plot_lay_down, always)),
     "hydrodynamic": each(hydrodynamic=(plot_hydrodynamic, saved)),
     "energy": each(law=(plot_energy_law, saved)),
     "steady-state": each(stationary=(plot_steady_state, always)),

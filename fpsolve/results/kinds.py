@@ -62,6 +62,14 @@ KINDS = {
         "fibre curves", "fpsolve.paths.fibres.fibre_curve:FibreCurve",
         "fpsolve.paths.fibres.fibre_curve:FibreCurve",
     ),
+    "fibre-motion": Kind(
+        "motions of a fibre", "fpsolve.fibre.motion:simulate",
+        "fpsolve.fibre.motion:Motion",
+    ),
+    "fibre-lay-down": Kind(
+        "fibres laid down on a belt", "fpsolve.fibre.laying:lay_down",
+        "fpsolve.fibre.laid:LayDown",
+    ),
     "hydrodynamic": Kind(
         "solutions of the hydrodynamic limit",
         "fpsolve.reduced.hydrodynamic.limit:HydrodynamicLimit.solve",

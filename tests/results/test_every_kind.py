@@ -43,6 +43,8 @@ CURVED = fp.SmoothPhaseSpaceGrid(6.0, 5.5, (12, 12, 8, 16))
 PLANE = fp.PlaneGrid(5.0, (16, 16))
 CIRCLE = np.stack([np.cos(0.1 * np.arange(9)), np.sin(0.1 * np.arange(9))], axis=-1)
 NARROW = fp.paths.GaussianLaw((0.5, 0.0), 0.8, 1.0, 1.0)
+SPINNING = fp.fibre.Nozzle((0.0, 0.0, 0.31), (0.1, 0.03, -1.0), 1.0, (0.01, 0.02), 6.0)
+SWINGING = np.outer(np.arange(5), (0.0, 0.1, 0.0))
 # The grids are coarse ones, made for quick tests.
 LENIENT = {"boundary_tolerance": 1.0, "mass_tolerance": 1.0, "entropy_tolerance": 1.0}
 SEVERAL = {"save_at": (0.0, 0.5, 1.0), "extrapolate": True}
@@ -86,6 +88,16 @@ MAKERS = {
     ),
     "fibre-curve": lambda: fp.FibreCurve(
         [CIRCLE, CIRCLE[:7]], 0.1, TURNING.curve, position_error=0.01, s_start=[0, 2]
+    ),
+    "fibre-motion": lambda: fp.fibre.simulate(
+        fp.fibre.String(1.0, 2e-3, 1000.0, 1e9, n_edges=4), 0.1, 8, velocity=SWINGING,
+        air=fp.fibre.AirFlow((1.0, 0.0, 0.0)), damping=0.01, save_every=2,
+        turbulence=fp.fibre.RandomForce(1e-4, correlation_time=0.01), seed=2,
+    ),
+    "fibre-lay-down": lambda: fp.fibre.lay_down(
+        fp.fibre.String(0.2, 2e-4, 1000.0, 1e8, SPINNING, fp.fibre.Free(), n_edges=10),
+        0.1, 20, belt=fp.fibre.Belt(0.3, 0.1), air=fp.fibre.AirFlow((0.0, 0.0, -1.0)),
+        save_every=5,
     ),
     "hydrodynamic": lambda: hydrodynamic(**SEVERAL),
     "hydrodynamic, plain": hydrodynamic,
@@ -327,6 +339,8 @@ NUMBERS = {
     "energy-paths": lambda found: f"{found.g[-1].mean():.5g}",
     "hydrodynamic-paths": lambda found: f"{found.mean()[0][-1, 0]:.5g}",
     "spectrum": lambda found: f"{found.gap:.12g}",
+    "fibre-motion": lambda found: f"{found.energy[-1]:.6g} J at last",
+    "fibre-lay-down": lambda found: f"{found.fed:.6g} m",
     "web": lambda found: f"{found.mean_length_density():.6g}",
     "web-design": lambda found: f"{found.cv[0]:.5g}",
     "averages": lambda found: f"{float(found['expectation'][0]):.6g}",

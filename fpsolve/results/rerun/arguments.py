@@ -12,6 +12,10 @@ import numpy as np
 from fpsolve.density.schemes.dictionaries import scheme_from_dict
 from fpsolve.errors import NotRepeatableError
 from fpsolve.evolution.call import ARRAY, KEPT, RESULT, USER_CODE, Call
+from fpsolve.fibre.air import AirFlow
+from fpsolve.fibre.ends import Belt
+from fpsolve.fibre.random_force import RandomForce
+from fpsolve.fibre.string import String
 from fpsolve.grids.dictionaries import grid_from_dict
 from fpsolve.grids.plane import PlaneGrid
 from fpsolve.model.curves.dictionaries import curve_from_dict
@@ -54,6 +58,10 @@ READERS: dict[str, Callable[[Any], Any]] = {
     "$sector": lambda about: Sector(**about),
     _SCHEME: _scheme,
     "$seed": _seed,
+    "$string": String.from_dict,
+    "$belt": lambda about: Belt(**about),
+    "$air": lambda about: AirFlow(**about),
+    "$random_force": lambda about: RandomForce(**about),
     "$energy_grid": lambda about: OfOwner("grid", about),
     RESULT: result_of,
     "$tuple": tuple,
