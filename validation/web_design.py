@@ -28,7 +28,7 @@ from fpsolve.plotting import plot_web_design  # noqa: E402
 PROCESS = fp.Process(0.005, 0.005, 20.0, 0.1, 50.0)
 TITER, WIDE, NARROW = 1.5e-4, 0.015, 5e-4
 TOLERANCE = 2e-2
-SIGMA2, SPEED = (3e-3, 15e-3), (0.05, 0.2)
+SIGMA2, SPEED = (2e-3, 15e-3), (0.05, 0.2)
 # Once in so many studies chance alone goes beyond the bound of the scores.
 ONCE_IN, N_WEBS = 100, 12
 N_SCAN, N_GRID = 9, 4

@@ -29,8 +29,9 @@ ZONES = (0.2, 1.0, 5.0)
 # Relative step of differences. They leave h²/6 of the third derivative, up to 2 % where
 # strips are strong: steps of half the size are combined with them to order four.
 STEP = 0.05
-# Tolerances of the gradient, and of what it is compared with.
-LOOSE, TIGHT = 2e-2, 5e-3
+# Tolerances of the gradient, of the finer one, and of predictions that are subtracted:
+# their nodes move with σ, and what that changes of CV is divided by the step.
+LOOSE, TIGHT, TIGHTEST = 2e-2, 5e-3, 5e-4
 
 
 def belt(numbers: np.ndarray) -> fp.LayDownModel:
@@ -105,9 +106,9 @@ def check_differences(
 def central(
     numbers: np.ndarray, positions: str, parameter: int, step: float
 ) -> np.ndarray:
-    """Central difference of CV of every zone, at the tighter tolerance."""
+    """Central difference of CV of every zone, at the tightest tolerance."""
     there, back = (
-        predicted(changed(numbers, parameter, share), positions, tolerance=TIGHT).cv
+        predicted(changed(numbers, parameter, share), positions, tolerance=TIGHTEST).cv
         for share in (step, -step)
     )
     return np.asarray((there - back) / (2 * step * numbers[parameter]))

@@ -71,9 +71,13 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--quick", action="store_true", help="one case, fewer zones")
     parser.add_argument("--directory", help="keep finished cases here")
+    parser.add_argument("--cases", type=int, nargs="+", help="some of the full ones")
     options = parser.parse_args()
     report = Report("web_homogeneity", options.quick)
-    for noises, speeds, spacings, positions, length in QUICK if options.quick else FULL:
+    cases = QUICK if options.quick else FULL
+    if options.cases:
+        cases = [FULL[number] for number in options.cases]
+    for noises, speeds, spacings, positions, length in cases:
         dataset = studies.web_homogeneity(
             UNIT, noises, speeds, spacings, positions=positions, workers=0,
             relaxation_length=length,

@@ -96,6 +96,27 @@ def test_the_waves_are_those_of_fibres_that_are_laid(rotating):
     assert seen >= 3
 
 
+def test_the_generator_has_the_same_pattern_without_a_grid(rotating):
+    """Two methods that share neither a basis nor a step, within both errors."""
+    state = fp.mean_pattern(rotating, spacing=2.5)
+    model = fp.mean_pattern(rotating.model, spacing=2.5)
+    assert model.length == state.length
+    assert model.width == state.width
+    for n, m in ((1, 0), (2, 0), (0, 1), (1, 1), (1, -1), (2, 1)):
+        pairs = model.amplitude(n, m), state.amplitude(n, m)
+        (value, error), (other, rest) = pairs
+        assert abs(value - other) < error + rest, (n, m)
+        # And each coefficient with its phase, which the amplitudes do not tell.
+        here, there = (
+            one.coefficients[
+                one.coefficients.shape[0] // 2 + n, one.coefficients.shape[1] // 2 + m
+            ]
+            for one in (model, state)
+        )
+        assert 2 * abs(here - there) < error + rest, (n, m)
+    assert model.errors.max() <= 5e-4
+
+
 def test_an_oscillation_across_the_belt_leaves_no_bands_and_close_nozzles_no_strips():
     state = state_of(fp.OscillatingNozzle(0.5, 0.8, 1.0))
     close = fp.mean_pattern(state, spacing=0.4)
