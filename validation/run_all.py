@@ -47,6 +47,7 @@ SCRIPTS = (
     "performance/levels.py",
     "performance/shifts.py",
     "performance/string_motion.py",
+    "performance/array_namespaces.py",
 )
 # For every night: kills by the dozen, times that a shared machine only blurs, and
 # claims that tests hold as well, on other models, shorter arclengths or fewer paths.
@@ -82,6 +83,7 @@ NIGHTLY = {
     "performance/levels.py": "",
     "performance/shifts.py": "",
     "performance/string_motion.py": "",
+    "performance/array_namespaces.py": "",
 }
 
 

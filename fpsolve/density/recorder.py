@@ -46,7 +46,8 @@ class Record:
 
     Attributes
     ----------
-    p : ndarray, shape (n1, n2, n_alpha)
+    density : ndarray, shape (n1, n2, n_alpha), or DeviceDensity
+        As the scheme gives it.
     s : float
     grid : PhaseSpaceGrid
     sums : RowFunctionals
@@ -58,11 +59,20 @@ class Record:
     def __init__(
         self, recorder: Recorder, p: Array, s: float, report: Mapping[str, float]
     ) -> None:
-        self.recorder, self.p, self.s, self.report = recorder, p, s, report
+        self.recorder, self.density, self.s, self.report = recorder, p, s, report
         self.grid = recorder.grid
-        self.sums = RowFunctionals(p, self.grid, recorder.inverse)
+        self.sums = self.functionals()
         self.moments = self.sums.moments()
         self.boundary_mass = diagnostics.ring_share(np.abs(self.sums.rows[0]))
+
+    @cached_property
+    def p(self) -> Array:
+        """The density on the host, shape (n1, n2, n_alpha)."""
+        return np.asarray(self.density)
+
+    def functionals(self) -> RowFunctionals:
+        """Sums over α for every ξ."""
+        return RowFunctionals(self.p, self.grid, self.recorder.inverse)
 
     @cached_property
     def relative_entropy(self) -> float:

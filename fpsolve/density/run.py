@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -161,11 +161,17 @@ class Run:
             entropy_floor=recorder.floor(),
             status=status,
             message=message,
-            provenance=self.watch.provenance(self.state.n_steps),
+            provenance=self._provenance(),
             initial_density=self._kept_start(),
             reference=self.reference,
             call=self.call,
         )
+
+    def _provenance(self) -> dict[str, Any]:
+        """What made the result; of a scheme on a device, which one."""
+        found = self.watch.provenance(self.state.n_steps)
+        origin = getattr(self.scheme, "origin", None)
+        return found if origin is None else {**found, "arrays": origin}
 
     def _kept_start(self) -> Array:
         """p0, which the caller's array may not be for long."""

@@ -14,6 +14,7 @@ from fpsolve._support.blas import one_blas_thread
 from fpsolve._support.memory import check_memory, required_memory
 from fpsolve._support.progress import ProgressCallback, reporting
 from fpsolve._support.provenance import announced_compilation
+from fpsolve.density.arrays.array_drift_kick import where_p0_lies
 from fpsolve.density.checkpoints.checkpoint import Checkpoint, as_checkpoint
 from fpsolve.density.keeper import MemoryKeeper
 from fpsolve.density.levels import MOST_LEVELS, checked_levels, n_passes
@@ -65,7 +66,9 @@ def solve(
     scheme : Scheme
         From `drift_kick` or `semi_lagrangian`, of a smooth fibre `smooth_drift_kick`.
     p0 : ndarray, shape (n1, n2, n_alpha)
-        Initial density; with a curvature (n1, n2, n_alpha, n_kappa).
+        Initial density; with a curvature (n1, n2, n_alpha, n_kappa). A float64 array
+        of another library, such as jax or cupy, is evolved there by `drift_kick`,
+        unless it is positive; the solution is on the host as ever.
     s_span : (float, float)
         Arclength at the start and at the end.
     ds : float, optional
@@ -147,7 +150,9 @@ def solve(
     ----------
     [KMW09]_, equations (7) and (11); extrapolation as in [Ric11]_ and [Gragg65]_.
     """
-    p0 = checked_start(checked_scheme(scheme), p0)
+    kept = checkpoint is not None
+    scheme, p0 = where_p0_lies(checked_scheme(scheme), p0, kept)
+    p0 = checked_start(scheme, p0)
     extrapolate = checked_levels(scheme, extrapolate)
     if reference is not None:
         reference = checked_reference(reference, scheme.grid)
@@ -179,7 +184,7 @@ def solve(
         **{f"{name}_tolerance": float(one) for name, one in vars(tolerances).items()},
         "reference": None if reference is None else Kept("reference", reference),
         "record_every": int(record_every),
-        "observe": described_observed(observe, checkpoint is not None),
+        "observe": described_observed(observe, kept),
     })  # fmt: skip
     arrays = {"p0": p0, "reference": reference, "save_at": save_at}
     with (

@@ -50,11 +50,21 @@ class RowFunctionals:
     def __init__(
         self, p: Array, grid: PhaseSpaceGrid, inverse: Array | None = None
     ) -> None:
-        self.grid = grid
-        self.rows = np.empty((N_FUNCTIONALS, *grid.shape[:2]))
+        rows = np.empty((N_FUNCTIONALS, *grid.shape[:2]))
         inverse = np.ones((1, 1)) if inverse is None else inverse
-        row_functionals(p, np.cos(grid.alpha), np.sin(grid.alpha), inverse, self.rows)
-        self.totals: list[float] = self.rows.sum(axis=(1, 2)).tolist()
+        row_functionals(p, np.cos(grid.alpha), np.sin(grid.alpha), inverse, rows)
+        self._take(rows, grid)
+
+    @classmethod
+    def of_rows(cls, rows: Array, grid: PhaseSpaceGrid) -> RowFunctionals:
+        """Those whose `rows` were found elsewhere."""
+        made = cls.__new__(cls)
+        made._take(rows, grid)
+        return made
+
+    def _take(self, rows: Array, grid: PhaseSpaceGrid) -> None:
+        self.grid, self.rows = grid, rows
+        self.totals: list[float] = rows.sum(axis=(1, 2)).tolist()
 
     def mass(self) -> float:
         """∫ p dξ dα."""

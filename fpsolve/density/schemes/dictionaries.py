@@ -22,7 +22,7 @@ def describe_scheme(scheme: Scheme) -> dict[str, Any]:
 
     Of a user's own class, which may have inherited a name, also which code it is.
     """
-    kind = type(scheme)
+    kind = getattr(scheme, "described_as", type(scheme))
     about = {
         "name": scheme.name,
         "order": scheme.order,

@@ -73,6 +73,8 @@ class SmoothRecorder(Recorder):
 def recorder_for(
     scheme: Any, reference: Array | None, observed: Sequence[Series]
 ) -> Recorder:
-    """The recorder for the grid of a scheme."""
-    kind = SmoothRecorder if isinstance(scheme.grid, SmoothPhaseSpaceGrid) else Recorder
+    """The recorder for the grid of a scheme, or that which the scheme brings."""
+    smooth = isinstance(scheme.grid, SmoothPhaseSpaceGrid)
+    usual = SmoothRecorder if smooth else Recorder
+    kind: type[Recorder] = getattr(scheme, "kind_of_recorder", usual)
     return kind(scheme.model, scheme.grid, reference, observed)
