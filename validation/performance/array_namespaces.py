@@ -77,10 +77,11 @@ def limits(library: Library, quick: bool) -> tuple[float, float]:
     """Bytes per second of a copy, operations per second of a matrix product."""
     host = library.name == "numpy" or "cpu" in str(library.device).lower()
     n, size = (2**22, 512) if quick else (2**25, 1024) if host else (2**28, 8192)
-    # Ones times something: a device must not know what comes out.
-    values = library.array(np.random.default_rng(1).random(n // 2**12))
-    values = library.xp.reshape(library.xp.stack([values] * 2**12, axis=0), (-1,))
-    matrix = library.array(np.random.default_rng(2).random((size, size)))
+    draw = np.random.default_rng(1).random
+    # An outer product, so that the host sends little.
+    left, right = library.array(draw((2**12, 1))), library.array(draw(n // 2**12))
+    values = library.xp.reshape(left * right, (-1,))
+    matrix = library.array(draw((size, size)))
     copy = library.compiled(added)
     copied = seconds(lambda: finished(copy(values)))
     product = library.compiled(multiplied)
