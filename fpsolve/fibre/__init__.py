@@ -10,6 +10,7 @@ from fpsolve.fibre.random_force import RandomForce
 from fpsolve.fibre.rest import Equilibrium, equilibrium
 from fpsolve.fibre.string import String
 from fpsolve.fibre.turbulence import TurbulenceSpectrum
+from fpsolve.fibre.turbulent_force import TurbulentForce
 from fpsolve.fibre.vibrations import Modes, modes
 
 __all__ = [
@@ -26,6 +27,7 @@ __all__ = [
     "RandomForce",
     "String",
     "TurbulenceSpectrum",
+    "TurbulentForce",
     "drag_coefficients",
     "drag_force",
     "drag_resistances",

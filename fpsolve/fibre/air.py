@@ -2,24 +2,29 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 from dataclasses import dataclass, fields
-from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
-from scipy.interpolate import RegularGridInterpolator
 
 from fpsolve._kernels.drag import Drag, drag_slopes
 from fpsolve._support.arrays import Array
-from fpsolve._support.checks import check_positive, keep_checked, shown
-from fpsolve.errors import FlowRangeError
+from fpsolve._support.checks import (
+    check_non_negative,
+    check_path,
+    check_positive,
+    keep_checked,
+    shown,
+)
 from fpsolve.fibre.drag import (
     MOST_SLENDERNESS,
     check_slenderness,
     resistance_table,
 )
 from fpsolve.fibre.ends import Vector, as_vector
+from fpsolve.fibre.flow_tables import TableField, fields_of_dataset, fields_of_file
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -27,33 +32,34 @@ if TYPE_CHECKING:
 __all__ = ["AirFlow"]
 
 Field = Callable[[Array, float], Array]
-# Names of coordinates and velocities in a table of a flow, and their units.
-AXES, VELOCITIES = ("x", "y", "z"), ("velocity_x", "velocity_y", "velocity_z")
-METRES, METRES_PER_SECOND = {"", "m"}, {"", "m/s", "m s-1", "m s^-1"}
 
 
 @dataclass(frozen=True)
 class AirFlow:
-    """u(x, t), ρ and ν of f = ρν (r_n(w) v_n + r_τ(w) v_τ), v = u − ∂_t r.
+    """u(x, t), ρ and ν of f = ρν (r_n(w) v_n + r_τ(w) v_τ), v = u − ∂_t r; k and ε.
 
     Parameters
     ----------
     velocity : tuple of float, or callable
         Mean velocity of the air in m/s, the same everywhere, or a function of
         positions, shape (n, 3), and the time that returns velocities of the same shape.
-        `AirFlow.from_dataset` makes one of a table.
+        `AirFlow.from_dataset` and `AirFlow.from_file` make one of a table.
     density : float
         ρ in kg/m³.
     viscosity : float
         Kinematic viscosity ν in m²/s.
     slenderness : float
         Of straight pieces of the fibre, for very slow air; see `drag_resistances`.
+    k, dissipation : float, or callable
+        Kinetic energy of the fluctuations in m²/s² and ε in m²/s³, of which a
+        `TurbulentForce` is made: numbers, or functions of positions and the time that
+        return numbers of the shape (n,). 0 is air without turbulence.
 
     Raises
     ------
     ValueError
-        If a number is not positive, or the velocity is neither three numbers nor a
-        function.
+        If a number is out of its range, the velocity is neither three numbers nor a
+        function, or only one of k and ε is 0.
 
     References
     ----------
@@ -66,9 +72,19 @@ class AirFlow:
     density: float = 1.2
     viscosity: float = 1.5e-5
     slenderness: float = MOST_SLENDERNESS
+    k: float | Field = 0.0
+    dissipation: float | Field = 0.0
 
     def __post_init__(self) -> None:
         keep_checked(self, check_positive, "density", "viscosity")
+        for name in ("k", "dissipation"):
+            if not callable(getattr(self, name)):
+                keep_checked(self, check_non_negative, name)
+        if (self.k == 0) != (self.dissipation == 0):
+            raise ValueError(
+                f"`dissipation` must be given with `k`, got {shown(self.dissipation)} "
+                f"and {shown(self.k)}; both are 0 without turbulence."
+            )
         keep_checked(self, check_slenderness, "slenderness")
         if not callable(self.velocity):
             keep_checked(self, as_vector, "velocity")
@@ -79,23 +95,63 @@ class AirFlow:
 
     @classmethod
     def from_dataset(cls, table: xr.Dataset, **options: Any) -> AirFlow:
-        """Flow between the points of a rectilinear table, by linear interpolation.
+        """Flow between the points of a table, by linear interpolation.
 
         Parameters
         ----------
         table : xarray.Dataset
             Coordinates x, y and z in m; variables velocity_x, velocity_y and velocity_z
-            in m/s on them. An attribute `units` of any other unit is refused.
+            in m/s on them, and perhaps k in m²/s² and dissipation in m²/s³. The
+            coordinates are those of a rectilinear grid, or all on one dimension of
+            scattered points. One that is left out is one on which the flow does not
+            depend, and without a velocity along it that is 0. An attribute `units` of
+            any other unit is refused.
         **options
             As for the class: `density`, `viscosity`, `slenderness`.
 
         Raises
         ------
         ValueError
-            If a coordinate or a velocity is missing, not finite, not rising, or in
-            another unit.
+            If a coordinate or a quantity is missing, not finite, not rising, negative,
+            or in another unit, or scattered points are given twice or span no volume.
         """
-        return cls(_Table.of(table), **options)
+        return cls(**{**fields_of_dataset(table), **options})
+
+    @classmethod
+    def from_file(cls, path: str | os.PathLike[str], **options: Any) -> AirFlow:
+        """Flow between the points that a CFD code has exported.
+
+        Parameters
+        ----------
+        path : str or os.PathLike
+            A CSV file of scattered points, with a heading as in `x [m], y [m], z [m],
+            u [m/s], v [m/s], w [m/s], k [m2/s2], epsilon [m2/s3]`, in any order; SI
+            units where none are given, further columns unread. Or a netCDF file as for
+            `from_dataset`.
+        **options
+            As for the class: `density`, `viscosity`, `slenderness`.
+
+        Raises
+        ------
+        ValueError
+            As for `from_dataset`, or if the file has no such heading.
+        """
+        return cls(**{**fields_of_file(check_path("path", path)), **options})
+
+    def table_errors(self) -> dict[str, float]:
+        """What leaving out half of the points of a table changes at most.
+
+        For the velocity in m/s, k and ε: for smooth flows above the error of the
+        interpolation, which is of order 2 in the distance of the points. 0 for numbers
+        and functions, and infinite for a table with too few points to leave any out.
+        """
+        fields = {
+            name: getattr(self, name) for name in ("velocity", "k", "dissipation")
+        }
+        return {
+            name: field.error if isinstance(field, TableField) else 0.0
+            for name, field in fields.items()
+        }
 
     def at(self, r: Array, t: float) -> Array:
         """Velocities at positions r of shape (n, 3), in m/s.
@@ -107,15 +163,28 @@ class AirFlow:
         FlowRangeError
             If a position is outside of a table.
         """
-        if not callable(self.velocity):
-            return np.broadcast_to(np.array(self.velocity), r.shape)
-        found = np.asarray(self.velocity(r, t), dtype=np.float64)
-        if found.shape != r.shape or not np.isfinite(found).all():
+        return _values("velocity", self.velocity, r, t, r.shape)
+
+    def turbulence_at(self, r: Array, t: float) -> tuple[Array, Array]:
+        """k and ε at positions r of shape (n, 3), shape (n,).
+
+        Raises
+        ------
+        ValueError
+            If a user's function does not return finite numbers of that shape, or one of
+            them is negative, or ε is 0 where k is not.
+        FlowRangeError
+            If a position is outside of a table.
+        """
+        k = _values("k", self.k, r, t, r.shape[:1])
+        dissipation = _values("dissipation", self.dissipation, r, t, r.shape[:1])
+        if not ((k >= 0) & (dissipation >= 0) & ((k == 0) | (dissipation > 0))).all():
             raise ValueError(
-                f"`velocity` must return finite numbers of the shape {r.shape}, got "
-                f"{shown(found)} at t = {t:g}."
+                "`k` and `dissipation` must be non-negative, and `dissipation` "
+                f"positive where `k` is, got {k.min():g} and {dissipation.min():g} at "
+                f"t = {t:g}."
             )
-        return found
+        return k, dissipation
 
     def pull(
         self, diameter: float, velocity: Array, tangent: Array
@@ -151,50 +220,14 @@ class AirFlow:
         )
 
 
-@dataclass(frozen=True, eq=False)
-class _Table:
-    """Velocities between the points of a rectilinear table."""
-
-    axes: tuple[Array, Array, Array]
-    velocities: Array
-
-    @classmethod
-    def of(cls, table: xr.Dataset) -> _Table:
-        """Read and checked."""
-        missing = [name for name in (*AXES, *VELOCITIES) if name not in table]
-        if missing:
-            raise ValueError(
-                f"`table` must have {', '.join((*AXES, *VELOCITIES))}, without "
-                f"{', '.join(missing)}."
-            )
-        for names, units in ((AXES, METRES), (VELOCITIES, METRES_PER_SECOND)):
-            for name in names:
-                unit = str(table[name].attrs.get("units", ""))
-                if unit not in units:
-                    raise ValueError(
-                        f"`{name}` of the table must be in {max(units, key=len)}, got "
-                        f"{unit}; convert it first."
-                    )
-        axes = tuple(np.asarray(table[name], dtype=np.float64) for name in AXES)
-        velocities = np.stack(
-            [table[name].transpose(*AXES).to_numpy() for name in VELOCITIES], axis=-1
-        ).astype(np.float64)
-        rising = all(one.size > 1 and (np.diff(one) > 0).all() for one in axes)
-        if not (rising and np.isfinite(velocities).all()):
-            raise ValueError(
-                "`table` must have rising coordinates, two at least of each, and "
-                "finite velocities."
-            )
-        return cls((axes[0], axes[1], axes[2]), velocities)
-
-    @cached_property
-    def _interpolated(self) -> RegularGridInterpolator:
-        return RegularGridInterpolator(self.axes, self.velocities, bounds_error=False)
-
-    def __call__(self, r: Array, t: float) -> Array:
-        """Velocities at positions; NaN nowhere, or a FlowRangeError."""
-        found = np.asarray(self._interpolated(r))
-        outside = ~np.isfinite(found).all(axis=1)
-        if outside.any():
-            raise FlowRangeError(t, tuple(r[outside.argmax()].tolist()))
-        return found
+def _values(name: str, field: Any, r: Array, t: float, shape: tuple[int, ...]) -> Array:
+    """Of numbers or a function; ValueError if this returns anything else."""
+    if not callable(field):
+        return np.broadcast_to(np.array(field), shape)
+    found = np.asarray(field(r, t), dtype=np.float64)
+    if found.shape != shape or not np.isfinite(found).all():
+        raise ValueError(
+            f"`{name}` must return finite numbers of the shape {shape}, got "
+            f"{shown(found)} at t = {t:g}."
+        )
+    return found

@@ -14,7 +14,7 @@ from scipy.special import i0e, i1e
 from fpsolve._support.arrays import Array, check_finite_numbers
 from fpsolve._support.checks import check_positive, keep_checked
 
-__all__ = ["TurbulenceSpectrum"]
+__all__ = ["FALLING", "RISING", "TurbulenceSpectrum", "energy_of"]
 
 # Powers and coefficients of E below the inertial range and beyond it, for which it is
 # twice continuously differentiable.
@@ -65,7 +65,7 @@ class TurbulenceSpectrum:
 
     def __post_init__(self) -> None:
         keep_checked(self, check_positive, *self.__dataclass_fields__)
-        smallest = self._energy_scale * float(_energy_of(1.0))
+        smallest = self._energy_scale * float(energy_of(1.0))
         if not self.k >= smallest:
             raise ValueError(
                 f"`k` must be at least {smallest:g}, got {self.k:g}; with less the "
@@ -274,21 +274,21 @@ _DISSIPATED = _ends(4 / 3)[1] + 3 / 4
 _DISSIPATED_BELOW = 3 / 4 - _ends(4 / 3)[0]
 
 
-def _energy_of(ratio: float) -> float:
+def energy_of(ratio: float) -> float:
     """K/(C_K^(3/2) √(2νε)) as a function of κ₁/κ₂; it falls."""
     energy = _ENERGY_BELOW * ratio ** (-2 / 3) - _ENERGY_LACKING
     return float(energy * math.sqrt(_DISSIPATED - _DISSIPATED_BELOW * ratio ** (4 / 3)))
 
 
 def _ratio_of(energy: float) -> float:
-    """κ₁/κ₂ of which `_energy_of` is this; 1 for the smallest one."""
-    if not _energy_of(1.0) < energy:
+    """κ₁/κ₂ of which `energy_of` is this; 1 for the smallest one."""
+    if not energy_of(1.0) < energy:
         return 1.0
     # Where a lower bound of it, which falls too, has this value.
     dissipated = math.sqrt(_DISSIPATED - _DISSIPATED_BELOW)
     lowest = (_ENERGY_BELOW / (energy / dissipated + _ENERGY_LACKING)) ** 1.5
     root = brentq(
-        lambda x: _energy_of(math.exp(x)) - energy, math.log(lowest), 0.0,
+        lambda x: energy_of(math.exp(x)) - energy, math.log(lowest), 0.0,
         xtol=1e-15, rtol=1e-14,
     )  # fmt: skip
     return math.exp(root)
