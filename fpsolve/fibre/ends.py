@@ -148,6 +148,8 @@ class Belt:
 
     A node that reaches the belt has its velocity from then on, as by friction without
     limit; the impact is plastic. What lies cannot move, and nothing is below the belt.
+    Loops of a stiff fibre stand on it. Suction through a belt presses them down: after
+    a settling time they are taken to lie under where they stand.
 
     Parameters
     ----------
@@ -155,6 +157,13 @@ class Belt:
         v_belt in m/s.
     height : float
         In m.
+    settling_time : float
+        In s, positive; infinite by default.
+
+    Raises
+    ------
+    ValueError
+        If a number is not finite, or the time not positive.
 
     References
     ----------
@@ -165,9 +174,14 @@ class Belt:
 
     speed: float
     height: float = 0.0
+    settling_time: float = math.inf
 
     def __post_init__(self) -> None:
         keep_checked(self, check_finite, "speed", "height")
+        if not self.settling_time > 0:
+            raise ValueError(
+                f"`settling_time` must be positive, got {shown(self.settling_time)}."
+            )
 
     def to_dict(self) -> dict[str, float]:
         """The parameters, as JSON holds them."""

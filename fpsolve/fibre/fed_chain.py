@@ -60,9 +60,17 @@ class FedChain:
             self.newest + 1,
         )
 
-    def trimmed(self) -> tuple[FedChain, Array]:
-        """Without what lies behind the part in the air, and its `on_belt`, in turn."""
+    def trimmed(self, belt: Belt | None, t: float) -> tuple[FedChain, Array]:
+        """Without what lies behind the part in the air, and its `on_belt`, in turn.
+
+        What two nodes have parted from that part for longer than `settling_time` is
+        left behind as it stands: nothing that happens before them moves it.
+        """
         last = int(np.flatnonzero(~self.laid)[-1]) + KEPT_NODES
+        if belt is not None and belt.settling_time < t:
+            settled = self.on_belt[:, 2] <= t - belt.settling_time
+            pairs = np.flatnonzero(settled[:-1] & settled[1:])
+            last = min([last, *(pairs[:1] + 1)])
         last = max(last, FEWEST_EDGES)
         if last >= self.laid.size - 1:
             return self, np.empty((0, 3))
@@ -71,7 +79,14 @@ class FedChain:
             self.r[kept], self.v[kept], self.tension[:last], self.laid[kept],
             self.on_belt[kept], self.newest,
         )  # fmt: skip
-        return chain, self.on_belt[:last:-1]
+        behind = self.on_belt[:last:-1].copy()
+        standing = np.isnan(behind[:, 2])
+        if standing.any():
+            assert belt is not None
+            places = self.r[:last:-1][standing] - [belt.speed * t, 0.0, 0.0]
+            behind[standing] = places
+            behind[standing, 2] = t
+        return chain, behind
 
     @property
     def lying(self) -> Array:

@@ -45,7 +45,8 @@ class LayDown(Saved):
     iterations, rejected : ndarray of int, shape (n_steps + 1,)
         Of Newton's method; steps that were taken in halves.
     landed : ndarray, shape (n_landed, 2)
-        Where nodes lie in the frame of the belt, in m, from the end of the fibre on.
+        Where nodes lie in the frame of the belt, in m, from the end of the fibre on;
+        of loops that stand, what is under them.
     landing_times : ndarray, shape (n_landed,)
         Since when, in s.
     saved : ndarray, shape (n_saved,)
@@ -57,7 +58,8 @@ class LayDown(Saved):
         the part in the air still bends against.
     position_error : float
         Bound of the error of the last positions, in the air and on the belt, from the
-        length of the steps: twice the distance to those of half as many, for order 1.
+        length of the steps: twice the distance to those of half as many, for order 1;
+        four times that distance where a tolerance takes steps in halves.
         Infinite for an odd number of steps, or if not asked for. Where loops form by
         buckling, small changes grow, and it is as large as they are.
     call : Call or None

@@ -10,6 +10,7 @@ import fpsolve as fp
 from fpsolve._kernels.impact import arrest
 from fpsolve.fibre import AirFlow, Belt, Clamped, Free, Nozzle, String, lay_down
 from fpsolve.fibre.fed_chain import FedChain, FedStep, put_down
+from fpsolve.fibre.halving import Halving
 
 THREAD = {"diameter": 2e-4, "density": 1000.0}
 TILTED = (0.1, 0.03, -1.0)
@@ -254,9 +255,85 @@ def test_the_error_covers_what_shorter_steps_change_before_anything_buckles():
         assert error <= motion.position_error < 4 * error
 
 
+def test_a_tolerance_halves_steps_until_the_error_has_fallen():
+    nozzle = Nozzle((0, 0, 0.3), (0, 0, -1), 1.0, (0.02, 0.0), 10.0)
+    string = hanging(nozzle, n_edges=10)
+    exact = lay_down(string, 0.1, 1600, estimate_error=False)
+    errors = []
+    for tolerance in (4e-5, 2.5e-6, 1.6e-7):
+        motion = lay_down(string, 0.1, 10, tolerance=tolerance)
+        errors.append(motion.distance(exact))
+        assert errors[-1] <= motion.position_error < 8 * errors[-1]
+    # Of steps a quarter as long at order 1, but for what halves leave: 1.5 and 2.3.
+    assert (orders(errors) > 1.3).all(), errors
+    assert motion.rejected.sum() > 50
+
+
+def test_a_step_is_halved_by_halves_and_no_part_is_computed_twice():
+    seen = []
+
+    def step(state, t, dt):
+        seen.append((t, dt))
+        return state + dt
+
+    def distance(before, one, other):
+        # Steps of more than ¼ that begin before ½ are too long.
+        _, dt = seen[-1]
+        return 1.0 if before < 0.5 and 2 * dt > 0.25 else 0.0
+
+    halving = Halving(step, distance, 0.5)
+    assert halving(0.0, 0.0, 1.0) == 1.0
+    # One whole step, two halves, and of the first of these two halves, and so on.
+    assert seen == [
+        (0.0, 1.0), (0.0, 0.5), (0.5, 0.5), (0.0, 0.25), (0.25, 0.25),
+        (0.0, 0.125), (0.125, 0.125), (0.25, 0.25), (0.25, 0.125), (0.375, 0.125),
+        (0.5, 0.5), (0.5, 0.25), (0.75, 0.25),
+    ]  # fmt: skip
+    assert halving.rejected == 2
+
+
+def test_a_step_that_never_becomes_accurate_or_possible_says_so():
+    halving = Halving(lambda state, t, dt: state, lambda *states: 0.3, 0.2)
+    with pytest.raises(
+        fp.errors.ToleranceError, match=r"0.2 not reached: .* 0.3; enlarge"
+    ):
+        halving(0.0, 0.0, 1.0)
+    halving.distance = lambda *states: math.nan
+    with pytest.raises(fp.errors.ToleranceError):
+        halving(0.0, 0.0, 1.0)
+
+    def impossible(state, t, dt):
+        raise fp.EdgeLengthError(t, dt, 0.1)
+
+    with pytest.raises(fp.EdgeLengthError) as caught:
+        Halving(impossible, lambda *states: 0.0, math.inf)(0.0, 0.0, 1.0)
+    assert caught.value.dt == 2.0**-12
+
+
+def test_loops_that_stand_are_left_behind_after_the_settling_time():
+    string = hanging(Nozzle((0, 0, 0.3), TILTED, 1.0), 1e9, n_edges=20)
+    tall, flat = (
+        lay_down(string, 1.0, 300, belt=Belt(0.0, 0.0, time), estimate_error=False)
+        for time in (math.inf, 0.2)
+    )
+    assert tall.free_length[-1] > 0.6 > 0.5 > flat.free_length[-1]
+    assert len(flat.landed) > len(tall.landed) + 30
+    # Under where they stand: nearer to each other than along the fibre.
+    edges = np.linalg.norm(np.diff(flat.landed, axis=0), axis=1) / string.edge
+    assert edges.max() < 1 + 1e-12
+    assert edges.min() < 0.9
+
+
 @pytest.mark.parametrize(
     ("call", "message"),
     [
+        (lambda: Belt(0.1, settling_time=0.0), "`settling_time` must be positive"),
+        (
+            lambda: lay_down(
+                hanging(Nozzle(NOWHERE, TILTED, 1.0)), 1.0, 2, tolerance=0.0
+            ),
+            "`tolerance` must be positive",
+        ),
         (
             lambda: lay_down(hanging(Clamped(NOWHERE, (0, 0, -1))), 1.0, 2),
             "`string` must have a `Nozzle` as its start and a free end",
