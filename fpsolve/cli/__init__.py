@@ -27,6 +27,7 @@ from fpsolve.cli.rerun import rerun
 from fpsolve.cli.resume import resume
 from fpsolve.cli.run import run
 from fpsolve.cli.spectrum import spectrum
+from fpsolve.cli.string import string
 from fpsolve.cli.web import web
 
 __all__ = ["app", "main"]
@@ -52,6 +53,7 @@ _COMMANDS: dict[Callable[..., None], str] = {
     web: "web --out results",
     predict: "predict --noise 2 --belt-speed 0.2 --spacing 0.5",
     design: "design --out results",
+    string: "string --out results",
     identify: "identify fibre.csv --belt-speed 0.1 --ds 1e-3",
     plot: "plot results/laydown.nc --movie",
     report: "report results/laydown.nc",

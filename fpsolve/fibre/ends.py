@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import ClassVar
 
 import numpy as np
@@ -185,7 +185,7 @@ class Belt:
 
     def to_dict(self) -> dict[str, float]:
         """The parameters, as JSON holds them."""
-        return {"speed": self.speed, "height": self.height}
+        return {one.name: getattr(self, one.name) for one in fields(self)}
 
 
 End = Free | Hinged | Clamped

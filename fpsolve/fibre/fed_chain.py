@@ -149,8 +149,12 @@ class FedStep:
         out = self.nozzle.speed * t - self.string.edge * (newest - self.string.n_edges)
         return place + out * np.array(self.nozzle.direction), velocity
 
-    def __call__(self, chain: FedChain, t: float, dt: float) -> tuple[FedChain, int]:
+    def __call__(
+        self, chain: FedChain, t: float, dt: float, force: Array | None = None
+    ) -> tuple[FedChain, int]:
         """What is there at t + dt, and the iterations of Newton's method.
+
+        A `force` on the nodes, in N, shape (n + 1, 3), stays what it is for the step.
 
         Raises
         ------
@@ -168,7 +172,7 @@ class FedStep:
         step, iterations = Step(dt, self.theta, 0.0), 0
         while True:
             current = numbers._replace(fixed=fixed)
-            iterations += found_step(current, step, iterate, self._wind, t)
+            iterations += found_step(current, step, iterate, self._wind, t, force)
             below = self._below(iterate) & ~fixed[:, 2]
             if not below.any():
                 break

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -20,8 +21,10 @@ from fpsolve.evolution.call import recorded
 from fpsolve.fibre.air import AirFlow
 from fpsolve.fibre.ends import Belt, Free, Nozzle
 from fpsolve.fibre.fed_chain import FedChain, FedStep
+from fpsolve.fibre.fed_noise import FedDraws
 from fpsolve.fibre.halving import Halving
 from fpsolve.fibre.laid import LayDown
+from fpsolve.fibre.random_force import StochasticForce, checked_law
 from fpsolve.fibre.rest import equilibrium
 from fpsolve.fibre.shapes import checked_shape, checked_vectors
 from fpsolve.fibre.string import String
@@ -46,6 +49,8 @@ def lay_down(
     velocity: ArrayLike | None = None,
     theta: float = 0.6,
     air: AirFlow | None = None,
+    turbulence: StochasticForce | None = None,
+    seed: int | None = None,
     tolerance: float | None = None,
     save_every: int | None = None,
     estimate_error: bool = True,
@@ -83,6 +88,11 @@ def lay_down(
         From ½ to 1; ½ adds no damping, and with a belt what an impact excites stays.
     air : AirFlow, optional
         What pulls at it with the force a per length.
+    turbulence : RandomForce or TurbulentForce, optional
+        A of A·dw_{s,t}, noise that is the same for the whole of each of the given
+        steps, also where these are taken in halves.
+    seed : int, optional
+        Of `turbulence`: the same seed and steps repeat the fibre bit by bit.
     tolerance : float, optional
         Largest distance in m of the positions after a step and after two of half its
         length, which are kept; longer steps are taken in halves. Steps in which a node
@@ -123,16 +133,19 @@ def lay_down(
     if save_every is not None:
         every = check_integer("save_every", save_every, 1)
     step = _checked_step(string, belt, theta, air)
+    draws = _checked_draws(turbulence, seed, step, t_end, n_steps)
     first = _first_chain(step, shape, velocity)
     estimate_error = check_flag("estimate_error", estimate_error)
     allowed = np.inf
     if tolerance is not None:
         allowed = check_positive("tolerance", tolerance)
-    found = _Run(step, t_end, n_steps, every, allowed).result(first)
+    found = _Run(step, t_end, n_steps, every, allowed, draws).result(first)
     if not estimate_error or n_steps % 2:
         return found
     # Of steps twice as long, whose errors are four times as large.
-    run = _Run(step, t_end, n_steps // 2, n_steps, 4 * allowed)
+    if draws is not None:
+        draws = replace(draws, dt=2 * draws.dt, pieces=2)
+    run = _Run(step, t_end, n_steps // 2, n_steps, 4 * allowed, draws)
     other = run.result(first)
     away = (SAFE if tolerance is None else SAFE_OF_HALVES) * found.distance(other)
     return replace(found, position_error=away)
@@ -156,6 +169,23 @@ def _checked_step(
     if air is not None:
         check_kind("air", air, AirFlow, "AirFlow(velocity) is one")
     return FedStep(string, belt, theta, air)
+
+
+def _checked_draws(
+    turbulence: StochasticForce | None,
+    seed: int | None,
+    step: FedStep,
+    t_end: float,
+    n_steps: int,
+) -> FedDraws | None:
+    """What is drawn at every step; TypeError unless there is a seed for it."""
+    drawn = checked_law(turbulence, seed)
+    if drawn is None:
+        return None
+    law, seed = drawn
+    string = step.string
+    n_nodes = string.n_edges + 2 + math.ceil(step.nozzle.speed * t_end / string.edge)
+    return FedDraws(law, string, step.air, t_end / n_steps, seed, n_nodes)
 
 
 def _first_chain(
@@ -206,6 +236,7 @@ class _Run:
     n_steps: int
     every: int
     tolerance: float
+    draws: FedDraws | None
     iterations: int = field(default=0, init=False)
 
     def result(self, chain: FedChain) -> LayDown:
@@ -217,6 +248,8 @@ class _Run:
         advanced = Halving(self._stepped, _apart, self.tolerance)
         for number in range(1, t.size):
             self.iterations = advanced.rejected = 0
+            if self.draws is not None:
+                self.draws.draw(number)
             chain = advanced(chain, t[number - 1], t[number] - t[number - 1])
             series[:, number] = *self._seen(chain), advanced.rejected
             chain, left = chain.trimmed(self.step.belt, t[number])
@@ -235,7 +268,11 @@ class _Run:
 
     def _stepped(self, chain: FedChain, t: float, dt: float) -> FedChain:
         """At t + dt, with what has come out."""
-        new, iterations = self.step(chain, t, dt)
+        force = None
+        if self.draws is not None:
+            masses = self.step.numbers(chain.tension.size).masses
+            force = self.draws.force(chain, masses, t)
+        new, iterations = self.step(chain, t, dt, force)
         self.iterations += iterations
         return self.step.after_feeding(new, t + dt)
 

@@ -23,7 +23,7 @@ from fpsolve.fibre.air import AirFlow
 from fpsolve.fibre.ends import Nozzle
 from fpsolve.fibre.forces import Forces
 from fpsolve.fibre.layouts import MOTION
-from fpsolve.fibre.random_force import Draws, StochasticForce
+from fpsolve.fibre.random_force import Draws, StochasticForce, checked_law
 from fpsolve.fibre.shapes import checked_shape, checked_vectors, first_shape
 from fpsolve.fibre.string import String
 from fpsolve.fibre.theta_step import ThetaStep
@@ -242,20 +242,11 @@ def _checked_draws(
     turbulence: StochasticForce | None, seed: int | None, step: ThetaStep
 ) -> Draws | None:
     """What is drawn at every step; TypeError unless there is a seed for it."""
-    if (turbulence is None) != (seed is None):
-        given = "`seed`" if turbulence is None else "`turbulence`"
-        raise TypeError(
-            f"`turbulence` and `seed` must be given together, got {given} alone."
-        )
-    if turbulence is None:
+    drawn = checked_law(turbulence, seed)
+    if drawn is None:
         return None
-    if not hasattr(turbulence, "amplitudes"):
-        raise TypeError(
-            f"`turbulence` must be a `RandomForce` or a `TurbulentForce`, got "
-            f"{shown(turbulence)}."
-        )
-    seed = check_integer("seed", seed, 0)
-    return Draws(turbulence, step.string, step.air, step.dt, seed)
+    law, seed = drawn
+    return Draws(law, step.string, step.air, step.dt, seed)
 
 
 def _checked_velocity(string: String, r: Array, velocity: ArrayLike | None) -> Array:

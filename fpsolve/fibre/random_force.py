@@ -9,11 +9,24 @@ from typing import Any, ClassVar, Protocol
 import numpy as np
 
 from fpsolve._support.arrays import Array
-from fpsolve._support.checks import check_non_negative, keep_checked
+from fpsolve._support.checks import (
+    check_integer,
+    check_non_negative,
+    keep_checked,
+    shown,
+)
 from fpsolve.fibre.air import AirFlow
 from fpsolve.fibre.string import String
 
-__all__ = ["Draws", "RandomForce", "StochasticForce", "node_tangents"]
+__all__ = [
+    "Draws",
+    "Noise",
+    "RandomForce",
+    "StochasticForce",
+    "checked_law",
+    "node_tangents",
+    "noise_force",
+]
 
 
 class StochasticForce(Protocol):
@@ -70,21 +83,74 @@ class RandomForce:
     def amplitudes(
         self, string: String, air: AirFlow | None, r: Array, v: Array, t: float
     ) -> Array:
-        """A times the identity at every node, shape (n_edges + 1, 3, 3)."""
-        shape = (string.n_edges + 1, 3, 3)
+        """A times the identity at every node, shape (n, 3, 3)."""
+        shape = (len(r), 3, 3)
         return np.asarray(np.broadcast_to(self.amplitude * np.eye(3), shape))
+
+
+@dataclass(eq=False)
+class Noise:
+    """Means over a step of independent noises η of unit strength: dw/dt, or correlated.
+
+    White noise of a step is ξ/√Δ; correlated noise is the mean of the process over the
+    step, exact for its law whatever the step. The numbers of a step are those of Philox
+    under the key (seed, number of the step): a run is repeated bit by bit by its seed
+    and its step. One of `pieces` steps in one draws the noise of all of them, so that
+    both motions are driven by the same.
+
+    Attributes
+    ----------
+    size : int
+        Number of noises, of three components each.
+    correlation_time : float
+    dt : float
+        Of a whole step.
+    seed : int
+    pieces : int
+    """
+
+    size: int
+    correlation_time: float
+    dt: float
+    seed: int
+    pieces: int = 1
+    _process: Array = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        time = self.correlation_time
+        # At its stationary law; the steps are numbered from 1.
+        self._process = np.zeros((self.size, 3))
+        if time:
+            self._process = self._normal(0)[0] / math.sqrt(2 * time)
+
+    def mean(self, number: int) -> Array:
+        """Over the step of this number, shape (size, 3); to be asked for 1, 2, … ."""
+        first = (number - 1) * self.pieces + 1
+        means = [self._mean(first + piece) for piece in range(self.pieces)]
+        return np.asarray(sum(means[1:], start=means[0]) / self.pieces)
+
+    def _mean(self, number: int) -> Array:
+        """Over one piece; the process moves on to the end of it."""
+        dt, time = self.dt / self.pieces, self.correlation_time
+        if not time:
+            return np.asarray(self._normal(number)[0] / math.sqrt(dt))
+        mean, moved = correlated_step(dt, time)
+        given = np.concatenate([self._process[None], self._normal(number)])
+        self._process = np.asarray(np.tensordot(moved, given, 1))
+        return np.asarray(np.tensordot(mean, given, 1))
+
+    def _normal(self, number: int) -> Array:
+        """Standard normal numbers of a step, shape (2, size, 3)."""
+        key = np.array([self.seed, number], dtype=np.uint64)
+        generator = np.random.Generator(np.random.Philox(key=key))
+        return generator.standard_normal((2, self.size, 3))
 
 
 @dataclass(eq=False)
 class Draws:
     """Forces on the nodes, one step after the other: √h A(r⁰, v⁰) times the noise.
 
-    The amplitude is that at the beginning of a step, as Itô's integral has it. White
-    noise of a step is ξ/√Δ; correlated noise is the mean of the process over the step,
-    exact for its law whatever the step. The numbers of a step are those of Philox under
-    the key (seed, number of the step): a run is repeated bit by bit by its seed and its
-    step. One of `pieces` steps in one draws the noise of all of them, so that both
-    motions are driven by the same.
+    The amplitude is that at the beginning of a step, as Itô's integral has it.
 
     Attributes
     ----------
@@ -103,43 +169,45 @@ class Draws:
     dt: float
     seed: int
     pieces: int = 1
-    _process: Array = field(init=False, repr=False)
+    noise: Noise = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
-        time = self.law.correlation_time
-        # At its stationary law; the steps are numbered from 1.
-        self._process = np.zeros((self.string.n_edges + 1, 3))
-        if time:
-            self._process = self._normal(0)[0] / math.sqrt(2 * time)
+        nodes, time = self.string.n_edges + 1, self.law.correlation_time
+        self.noise = Noise(nodes, time, self.dt, self.seed, self.pieces)
 
     def value(self, number: int, r: Array, v: Array, t: float) -> Array:
         """Force on every node during the step of this number, in N, shape (n, 3).
 
         To be asked for step 1, 2, … in turn, with what the step begins with.
         """
-        first = (number - 1) * self.pieces + 1
-        means = [self._mean(first + piece) for piece in range(self.pieces)]
-        mean = sum(means[1:], start=means[0]) / self.pieces
         lengths = self.string.masses / self.string.line_density
         amplitudes = self.law.amplitudes(self.string, self.air, r, v, t)
-        drawn = np.einsum("nij,nj->ni", amplitudes, mean)
-        return np.asarray(np.sqrt(lengths)[:, None] * drawn)
+        return noise_force(lengths, amplitudes, self.noise.mean(number))
 
-    def _mean(self, number: int) -> Array:
-        """Of the noise over one piece; the process moves on to the end of it."""
-        dt, time = self.dt / self.pieces, self.law.correlation_time
-        if not time:
-            return np.asarray(self._normal(number)[0] / math.sqrt(dt))
-        mean, moved = correlated_step(dt, time)
-        given = np.concatenate([self._process[None], self._normal(number)])
-        self._process = np.asarray(np.tensordot(moved, given, 1))
-        return np.asarray(np.tensordot(mean, given, 1))
 
-    def _normal(self, number: int) -> Array:
-        """Standard normal numbers of a step, shape (2, n, 3)."""
-        key = np.array([self.seed, number], dtype=np.uint64)
-        generator = np.random.Generator(np.random.Philox(key=key))
-        return generator.standard_normal((2, self.string.n_edges + 1, 3))
+def checked_law(
+    turbulence: StochasticForce | None, seed: int | None
+) -> tuple[StochasticForce, int] | None:
+    """Both, or None; TypeError unless they are given together."""
+    if (turbulence is None) != (seed is None):
+        given = "`seed`" if turbulence is None else "`turbulence`"
+        raise TypeError(
+            f"`turbulence` and `seed` must be given together, got {given} alone."
+        )
+    if turbulence is None:
+        return None
+    if not hasattr(turbulence, "amplitudes"):
+        raise TypeError(
+            f"`turbulence` must be a `RandomForce` or a `TurbulentForce`, got "
+            f"{shown(turbulence)}."
+        )
+    return turbulence, check_integer("seed", seed, 0)
+
+
+def noise_force(lengths: Array, amplitudes: Array, noise: Array) -> Array:
+    """√h A η on every node, shape (n, 3)."""
+    drawn = np.einsum("nij,nj->ni", amplitudes, noise)
+    return np.asarray(np.sqrt(lengths)[:, None] * drawn)
 
 
 def correlated_step(dt: float, time: float) -> tuple[Array, Array]:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -58,6 +59,8 @@ class TurbulentForce:
     [KMW09]_, equation (5); [MW06]_; [MW11]_; [Sre95]_ for the constant.
     """
 
+    _recorded: ClassVar[str] = "turbulent_force"
+
     kolmogorov_constant: float = 1.2
     frozen: bool = False
     decay_time: float | None = None
@@ -74,6 +77,10 @@ class TurbulentForce:
                     f"`decay_time` must be None for frozen eddies, got "
                     f"{self.decay_time:g}; they do not decay."
                 )
+
+    def to_dict(self) -> dict[str, Any]:
+        """The parameters, as JSON holds them."""
+        return {one.name: getattr(self, one.name) for one in fields(self)}
 
     def amplitudes(
         self, string: String, air: AirFlow | None, r: Array, v: Array, t: float

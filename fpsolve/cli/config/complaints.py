@@ -8,21 +8,23 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from fpsolve.cli.config.description import Description
+from fpsolve.cli.config.description import Written
 from fpsolve.cli.config.design import DesignConfig
 from fpsolve.cli.config.paths import PathsConfig
 from fpsolve.cli.config.run import RunConfig
 from fpsolve.cli.config.sections import kinds_of
+from fpsolve.cli.config.string import StringConfig
 from fpsolve.cli.config.web import WebConfig
 
 __all__ = ["complaints", "suggestion"]
 
 # The command that reads a kind of configuration.
-_COMMANDS: dict[type[Description], str] = {
+_COMMANDS: dict[type[Written], str] = {
     RunConfig: "fpsolve run",
     PathsConfig: "fpsolve paths",
     WebConfig: "fpsolve web",
     DesignConfig: "fpsolve design",
+    StringConfig: "fpsolve string",
 }
 # A section of one name is the same in all of them.
 _SECTIONS = {
@@ -42,7 +44,7 @@ _TYPES = {
 }
 
 
-def complaints(error: ValidationError, config: type[Description]) -> list[str]:
+def complaints(error: ValidationError, config: type[Written]) -> list[str]:
     """Return a sentence for every key that is wrong, the section named first.
 
     A value that fits none of several types gives one sentence with all of them. A
@@ -82,7 +84,7 @@ def suggestion(name: str, known: Iterable[str], quote: str = "`{}`") -> str:
     return f"; did you mean {quote.format(nearest)}?" if near else "."
 
 
-def _other_command(error: ValidationError, config: type[Description]) -> str | None:
+def _other_command(error: ValidationError, config: type[Written]) -> str | None:
     """Return the command to which the file belongs, if its sections say so."""
     unknown = {
         entry["loc"][0]
@@ -106,7 +108,7 @@ def _place(location: tuple[int | str, ...]) -> tuple[Any, ...]:
     return (name, kind, rest[0] if rest else None)
 
 
-def _sentence(entry: Mapping[str, Any], config: type[Description]) -> str:
+def _sentence(entry: Mapping[str, Any], config: type[Written]) -> str:
     name, kind, key = _place(entry["loc"])
     what = entry["type"]
     if what == "value_error":
@@ -123,7 +125,7 @@ def _sentence(entry: Mapping[str, Any], config: type[Description]) -> str:
     return _wrong_value(name, key, entry)
 
 
-def _wrong_section(name: str, what: str, config: type[Description]) -> str:
+def _wrong_section(name: str, what: str, config: type[Written]) -> str:
     if what == "missing":
         return f"section [{name}] must be given, got none."
     near = suggestion(name, config.model_fields, "[{}]")

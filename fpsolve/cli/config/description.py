@@ -20,10 +20,28 @@ from fpsolve.errors import ConfigurationError
 from fpsolve.model.curves.belts import FixedBelt
 from fpsolve.model.fibre import FibreModel
 
-__all__ = ["Description", "named_section"]
+__all__ = ["Description", "Written", "named_section"]
 
 
-class Description(Section):
+class Written(Section):
+    """Tables of a file, which are written out again with the defaults."""
+
+    def changed(self, section: str, **keys: Any) -> Self:
+        """Return the configuration with the keys that are not None in a section."""
+        given = {name: value for name, value in keys.items() if value is not None}
+        changed = getattr(self, section).model_copy(update=given)
+        return self.model_copy(update={section: changed})
+
+    def to_toml(self) -> str:
+        """Return the configuration as TOML, with the defaults written out."""
+        tables = self.model_dump(exclude_none=True)
+        return "\n".join(
+            f"[{name}]\n" + "".join(_line(*item) for item in table.items())
+            for name, table in tables.items()
+        )
+
+
+class Description(Written):
     """The sections `potential`, `model` and `curve`, or `process` in their place."""
 
     potential: PotentialSection | None = None
@@ -57,20 +75,6 @@ class Description(Section):
         """
         with named_section("model" if self.process is None else "process"):
             return self._model()
-
-    def changed(self, section: str, **keys: Any) -> Self:
-        """Return the configuration with the keys that are not None in a section."""
-        given = {name: value for name, value in keys.items() if value is not None}
-        changed = getattr(self, section).model_copy(update=given)
-        return self.model_copy(update={section: changed})
-
-    def to_toml(self) -> str:
-        """Return the configuration as TOML, with the defaults written out."""
-        tables = self.model_dump(exclude_none=True)
-        return "\n".join(
-            f"[{name}]\n" + "".join(_line(*item) for item in table.items())
-            for name, table in tables.items()
-        )
 
     def _model(self) -> FibreModel:
         if self.potential is None or self.model is None:

@@ -12,7 +12,7 @@ from pydantic import ValidationError
 
 from fpsolve._support.checks import check_path
 from fpsolve.cli.config.complaints import complaints, suggestion
-from fpsolve.cli.config.description import Description
+from fpsolve.cli.config.description import Written
 from fpsolve.cli.config.run import RunConfig
 from fpsolve.errors import ConfigurationError
 
@@ -20,6 +20,7 @@ __all__ = [
     "DESIGN_EXAMPLE",
     "EXAMPLES",
     "PATHS_EXAMPLE",
+    "STRING_EXAMPLE",
     "WEB_EXAMPLE",
     "check_config",
     "example_path",
@@ -27,14 +28,15 @@ __all__ = [
     "read_config",
 ]
 
-T = TypeVar("T", bound=Description)
+T = TypeVar("T", bound=Written)
 
-# What `fpsolve run` can solve, `fpsolve paths` samples, `fpsolve web` lays, and
-# `fpsolve design` improves.
+# What `fpsolve run` can solve, `fpsolve paths` samples, `fpsolve web` lays,
+# `fpsolve design` improves, and `fpsolve string` spins.
 EXAMPLES = ("laydown", "spunbond")
 PATHS_EXAMPLE = "fibres"
 WEB_EXAMPLE = "web"
 DESIGN_EXAMPLE = "design"
+STRING_EXAMPLE = "string"
 
 
 @overload
@@ -46,15 +48,16 @@ def load_config(path: str | os.PathLike[str], kind: type[T]) -> T: ...
 
 
 def load_config(
-    path: str | os.PathLike[str], kind: type[Description] = RunConfig
-) -> Description:
+    path: str | os.PathLike[str], kind: type[Written] = RunConfig
+) -> Written:
     """Read and check a TOML file that describes a run.
 
     Parameters
     ----------
     path : str or os.PathLike
     kind : type, optional
-        RunConfig, PathsConfig for sampled paths, WebConfig for a web, or DesignConfig.
+        RunConfig, PathsConfig for sampled paths, WebConfig for a web, DesignConfig, or
+        StringConfig.
 
     Raises
     ------
@@ -76,8 +79,8 @@ def read_config(text: str, source: str = ..., *, kind: type[T]) -> T: ...
 
 
 def read_config(
-    text: str, source: str = "configuration", *, kind: type[Description] = RunConfig
-) -> Description:
+    text: str, source: str = "configuration", *, kind: type[Written] = RunConfig
+) -> Written:
     """Check a configuration given as TOML text.
 
     Parameters
@@ -129,16 +132,17 @@ def example_path(name: str) -> Path:
 
     Parameters
     ----------
-    name : {"laydown", "spunbond", "fibres", "web", "design"}
+    name : {"laydown", "spunbond", "fibres", "web", "design", "string"}
         B = ‖ξ‖²/2 with A = 1, a spunbond process in SI units, paths on a belt, the
-        web of a spunbond process, or what is asked of its design.
+        web of a spunbond process, what is asked of its design, or a fibre in the air.
 
     Raises
     ------
     ConfigurationError
         If there is no such example.
     """
-    if name not in (*EXAMPLES, PATHS_EXAMPLE, WEB_EXAMPLE, DESIGN_EXAMPLE):
+    others = (PATHS_EXAMPLE, WEB_EXAMPLE, DESIGN_EXAMPLE, STRING_EXAMPLE)
+    if name not in (*EXAMPLES, *others):
         raise ConfigurationError(
             f"`example` must be one of {', '.join(EXAMPLES)}, got {name!r}"
             f"{suggestion(name, EXAMPLES)}"

@@ -16,6 +16,7 @@ from fpsolve.fibre.air import AirFlow
 from fpsolve.fibre.ends import Belt
 from fpsolve.fibre.random_force import RandomForce
 from fpsolve.fibre.string import String
+from fpsolve.fibre.turbulent_force import TurbulentForce
 from fpsolve.grids.dictionaries import grid_from_dict
 from fpsolve.grids.plane import PlaneGrid
 from fpsolve.model.curves.dictionaries import curve_from_dict
@@ -61,6 +62,7 @@ READERS: dict[str, Callable[[Any], Any]] = {
     "$string": String.from_dict,
     "$belt": lambda about: Belt(**about),
     "$air": lambda about: AirFlow(**about),
+    "$turbulent_force": lambda about: TurbulentForce(**about),
     "$random_force": lambda about: RandomForce(**about),
     "$energy_grid": lambda about: OfOwner("grid", about),
     RESULT: result_of,
