@@ -101,7 +101,8 @@ def lay_down(
         Keep the fibre in the air at every so-many-th step, and at the last; by default
         at the first and the last.
     estimate_error : bool
-        Repeat the motion with half of the steps, for `position_error`.
+        Repeat the motion with half of the steps, for `position_error`; in turbulence
+        driven by the same noise.
 
     Returns
     -------
@@ -135,6 +136,8 @@ def lay_down(
     step = _checked_step(string, belt, theta, air)
     draws = _checked_draws(turbulence, seed, step, t_end, n_steps)
     first = _first_chain(step, shape, velocity)
+    if belt is not None:
+        _check_height(step, first.r, draws is not None)
     estimate_error = check_flag("estimate_error", estimate_error)
     allowed = np.inf
     if tolerance is not None:
@@ -200,7 +203,6 @@ def _first_chain(
     if velocity is not None:
         v[1:] = checked_vectors("velocity", velocity, v.shape)[1:]
     if step.belt is not None:
-        _check_height(step, r)
         laid[1:] = r[1:, 2] == step.belt.height
         on_belt[laid] = r[laid] * [1.0, 1.0, 0.0]
         v[laid] = [step.belt.speed, 0.0, 0.0]
@@ -209,7 +211,7 @@ def _first_chain(
     )
 
 
-def _check_height(step: FedStep, r: Array) -> None:
+def _check_height(step: FedStep, r: Array, shaken: bool) -> None:
     """ValueError if the fibre is below the belt, or may buckle to any side."""
     assert step.belt is not None
     lowest, height = float(r[:, 2].min()), step.belt.height
@@ -219,7 +221,7 @@ def _check_height(step: FedStep, r: Array) -> None:
             f"it, got a height of {lowest:g}; shorten the fibre or raise the nozzle."
         )
     aside = np.ptp(r[:, :2], axis=0).max()
-    still = not any(step.nozzle.radii) and step.air is None
+    still = not any(step.nozzle.radii) and step.air is None and not shaken
     if still and not aside > STRAIGHT * step.string.edge:
         raise ValueError(
             "`string` must not hang straight above the belt, where nothing says to "
