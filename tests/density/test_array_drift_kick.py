@@ -6,6 +6,7 @@ the same programs. jax, on every night, runs them compiled.
 
 import subprocess
 import sys
+import tracemalloc
 
 import array_api_strict as strict
 import jax_runs
@@ -98,6 +99,28 @@ def test_matrices_between_nodes_are_combined_as_by_the_kernels():
         np.asarray(there.density(state)), scheme.density(expected),
         rtol=0, atol=1e-13 * p0.max(),
     )  # fmt: skip
+
+
+STEEP = fp.PowerPotential(4.0)
+
+
+@pytest.mark.parametrize(
+    ("potential", "shape"), [(TILTED, (20, 22, 32)), (STEEP, (20, 22, 64))]
+)
+def test_a_run_takes_the_memory_that_is_asked_for(potential, shape):
+    grid = fp.PhaseSpaceGrid(half_width=4.0, shape=shape)
+    scheme = fp.drift_kick(fp.LayDownModel(potential=potential, noise=0.8), grid)
+    p0 = start_of(scheme)
+    scheme.kick.table(DS)
+    tracemalloc.start()
+    try:
+        there = ArrayDriftKick(scheme, NUMPY)
+        there.advance(there.start(p0), 0.0, DS, 2)
+        peak = tracemalloc.get_traced_memory()[1] / grid.nbytes
+    finally:
+        tracemalloc.stop()
+    # What is asked for is for matrices of every |∇B| that there can be.
+    assert there.n_arrays / 2 < peak < there.n_arrays
 
 
 @pytest.mark.parametrize("size", [None, 1, 4, 64])

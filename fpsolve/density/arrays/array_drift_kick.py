@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
 from fpsolve._support.arrays import Array
 from fpsolve.density.arrays.angle_step import AngleStep
 from fpsolve.density.arrays.circulants import CirculantTranslation
@@ -12,6 +14,11 @@ from fpsolve.density.arrays.library import Library, check_double, library_of, on
 from fpsolve.density.arrays.record import ArrayRecorder
 from fpsolve.density.schemes.drift_kick import DriftKick
 from fpsolve.density.schemes.form import State
+from fpsolve.density.schemes.rotation_table import (
+    LARGEST_TABLE,
+    NODES,
+    interval_width,
+)
 
 __all__ = ["ArrayDriftKick", "where_p0_lies"]
 
@@ -61,12 +68,17 @@ class ArrayDriftKick(DriftKick):
 
     @property
     def n_arrays(self) -> float:
-        """Densities alive during a run: four in a step, the frames of the rows, the
-        circulants of two shifts, and the table with what fills its blocks.
+        """Densities alive during a run, where matrices are combined from eight.
+
+        Rows that are weighted eight times are most of a step; circulants of two shifts;
+        matrices for every interval of |∇B| there can be, in blocks that are filled up.
         """
-        n1, n2, _ = self.grid.shape
-        tables = 2.0 * float(self.kick.kick.n_arrays)
-        return 5.0 + 2.0 * (n1 / n2 + n2 / n1) + tables
+        n1, n2, n_alpha = self.grid.shape
+        matrices = (
+            NODES / interval_width(n_alpha // 2) * (np.pi / 2) * (n_alpha / 2) ** 2
+        )
+        tables = max(LARGEST_TABLE, matrices / (n1 * n2 * n_alpha))
+        return 19.0 + 2.0 * (n1 / n2 + n2 / n1) + 1.5 * float(tables)
 
     def _apply(self, operator: Any, state: State, s: float, ds: float) -> None:
         state.values = operator(state.values, s, ds)
