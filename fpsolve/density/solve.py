@@ -15,6 +15,7 @@ from fpsolve._support.memory import check_memory, required_memory
 from fpsolve._support.progress import ProgressCallback, reporting
 from fpsolve._support.provenance import announced_compilation
 from fpsolve.density.arrays.array_drift_kick import where_p0_lies
+from fpsolve.density.arrays.library import brought
 from fpsolve.density.checkpoints.checkpoint import Checkpoint, as_checkpoint
 from fpsolve.density.keeper import MemoryKeeper
 from fpsolve.density.levels import MOST_LEVELS, checked_levels, n_passes
@@ -155,7 +156,7 @@ def solve(
     p0 = checked_start(scheme, p0)
     extrapolate = checked_levels(scheme, extrapolate)
     if reference is not None:
-        reference = checked_reference(reference, scheme.grid)
+        reference = checked_reference(brought(reference), scheme.grid)
     tolerances = Tolerances(
         mass_tolerance, boundary_tolerance, negative_tolerance, entropy_tolerance,
         circulation_tolerance,

@@ -70,11 +70,12 @@ def test_passes_are_combined_and_numbers_of_the_user_observed():
     asked = {
         "extrapolate": 3,
         "observe": {"largest": lambda p, grid: p.max()},
-        "reference": np.full(scheme.grid.shape, 1 / 400),
         "record_every": 4,
     }
-    found = run(scheme, strict.asarray(p0), **asked)
-    expected = run(scheme, p0, **asked)
+    reference = np.full(scheme.grid.shape, 1 / 400)
+    there = strict.asarray(reference)
+    found = run(scheme, strict.asarray(p0), reference=there, **asked)
+    expected = run(scheme, p0, reference=reference, **asked)
     # Weights of three levels add up to five.
     assert_same_run(found, expected)
     assert found.largest[-1] == pytest.approx(found.final.max(), rel=0.5)

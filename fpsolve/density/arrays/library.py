@@ -13,7 +13,7 @@ import numpy as np
 
 from fpsolve._support.arrays import Array
 
-__all__ = ["Foreign", "Library", "library_of"]
+__all__ = ["Foreign", "Library", "brought", "library_of", "on_host"]
 
 # An array of a library that is known when it is called only.
 Foreign: TypeAlias = Any
@@ -99,6 +99,11 @@ def check_double(name: str, values: Foreign, library: Library) -> None:
         f"`{name}` must hold float64 to be evolved by {library.name}, got "
         f"{values.dtype}; {remedy}."
     )
+
+
+def brought(values: Any) -> Any:
+    """An array of another library on the host; anything else as it is."""
+    return values if library_of(values) is None else on_host(values)
 
 
 def on_host(values: Foreign) -> Array:
