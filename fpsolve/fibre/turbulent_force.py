@@ -85,7 +85,7 @@ class TurbulentForce:
     def amplitudes(
         self, string: String, air: AirFlow | None, r: Array, v: Array, t: float
     ) -> Array:
-        """L D at every node, shape (n_edges + 1, 3, 3), in N s^½/m^½.
+        """L D at nodes at r, shape (n, 3, 3), in N s^½/m^½.
 
         Raises
         ------
