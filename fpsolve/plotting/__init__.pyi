@@ -17,6 +17,7 @@ from .fibre_motion import plot_motion as plot_motion
 from .fibres import plot_fibre as plot_fibre
 from .fibres import plot_nozzles as plot_nozzles
 from .files import save_figures as save_figures
+from .flow import plot_fibres_in_flow as plot_fibres_in_flow
 from .homogeneity import plot_web_homogeneity as plot_web_homogeneity
 from .hydrodynamic import plot_hydrodynamic as plot_hydrodynamic
 from .identification import plot_identified_fibres as plot_identified_fibres
