@@ -68,7 +68,7 @@ def predict_web(
     changes. Of a process the derivatives are those in its own numbers in SI units.
 
     Of smooth fibres Ŝ takes seconds to minutes, the more the longer R/σ and the smaller
-    the noise; their derivatives are not known.
+    the noise, and derivatives, also in R, as much again or a little more.
 
     Parameters
     ----------
@@ -88,8 +88,8 @@ def predict_web(
     tolerance : float
         For every CV, relative.
     gradients : bool
-        Whether derivatives are computed, too, of the basic model. They do not change
-        the rest, and have the errors that they have: `tolerance` is for CV.
+        Whether derivatives are computed, too, under a `QuadraticPotential`. They do not
+        change the rest, and have the errors that they have: `tolerance` is for CV.
 
     Returns
     -------
@@ -99,7 +99,7 @@ def predict_web(
     ------
     ValueError
         As `web_spectrum`, or if the belt is at rest, a length is not positive, or
-        `gradients` of a smooth fibre are asked for.
+        `gradients` under another potential are asked for.
     ToleranceError
         If the spectrum is not known to the tolerance.
 
@@ -113,8 +113,8 @@ def predict_web(
     gradients = check_flag("gradients", gradients)
     if gradients and not has_gradients(fibre):
         raise ValueError(
-            "`gradients` are those of the basic model with a quadratic potential, got "
-            "another one; compare predictions for two values of a parameter."
+            "`gradients` are those of a model with a quadratic potential, got another "
+            "one; compare predictions for two values of a parameter."
         )
     found = of_model(
         fibre, unit, check_positive("spacing", spacing), zones, positions,

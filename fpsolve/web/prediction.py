@@ -116,7 +116,8 @@ class WebPrediction(Saved):
         ⟨τ⊗τ⟩ over laid length, index 0 in the machine direction.
     parameters : tuple of str
         Of a model "noise", "belt_speed", "sigma1", "sigma2", "spacing", of a process
-        "speed_ratio" in place of the second; none unless `gradients` were asked for.
+        "speed_ratio" in place of the second, of smooth fibres "relaxation_length"
+        before the last; none unless `gradients` were asked for.
     gradient, gradient_errors : ndarray, shape (parameter, zone), or None
         ∂CV/∂parameter at fixed other parameters, and bounds of the errors.
     strip_gradient, strip_gradient_errors : ndarray, shape (parameter, strip), or None

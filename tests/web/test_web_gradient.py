@@ -253,3 +253,9 @@ def test_differences_of_a_process_agree_in_its_own_units():
         there, back = (of(**{name: value + step}) for step in (h, -h))
         away = np.abs((there.cv - back.cv) / (2 * h) - found.gradient[place])
         assert (away <= found.gradient_errors[place]).all()
+
+
+def test_gradients_under_another_potential_are_refused():
+    model = fp.LayDownModel(fp.PowerPotential(4), 2.0, fp.MovingBelt(0.2))
+    with pytest.raises(ValueError, match="`gradients` are those of a model with a qua"):
+        fp.predict_web(model, spacing=1.0, zones=1.0, gradients=True)

@@ -32,10 +32,18 @@ from fpsolve.spectral.resolvent.plane_waves import (
     characteristic_changes,
 )
 from fpsolve.spectral.resolvent.round_ladder import RoundLadder, check_spectrum_model
+from fpsolve.spectral.resolvent.smooth_generator import SmoothGenerator
 from fpsolve.spectral.resolvent.smooth_ladder import LAW, SmoothLadder
 from fpsolve.spectral.resolvent.smooth_limit import smooth_angle_limit
 from fpsolve.spectral.resolvent.smooth_spectrum import LONG as SMOOTH_LONG
-from fpsolve.spectral.resolvent.smooth_spectrum import smooth_spectrum
+from fpsolve.spectral.resolvent.smooth_spectrum import (
+    smooth_gradient,
+    smooth_spectrum,
+)
+from fpsolve.spectral.resolvent.smooth_waves import angle_moments
+from fpsolve.spectral.resolvent.smooth_waves import (
+    characteristic_changes as smooth_characteristic_changes,
+)
 
 __all__ = [
     "Differentiable",
@@ -208,6 +216,42 @@ class SmoothFibre(SmoothLadder):
         """(2π/|k|) Σ± f(β ± π/2), the end of short waves in the direction of k."""
         return smooth_angle_limit(self.laws(LAW)[0], k)
 
+    @property
+    def parameters(self) -> tuple[str, ...]:
+        """What derivatives are in."""
+        return SmoothGenerator.parameters
+
+    def gradient(self, k1: Array, k2: Array, tolerance: float) -> Pair:
+        """Ŝ and its derivatives in the parameters, (i, column), and their errors."""
+        return smooth_gradient(self, k1, k2, tolerance)
+
+    def limit_changes(self, k: tuple[float, float]) -> Array:
+        """Derivatives of the end of short waves."""
+        law = self.laws(LAW)[0]
+        changes = law.stationary_derivatives
+        return np.array([smooth_angle_limit(law, k, one) for one in changes])
+
+    def characteristic_changes(self, k2: Array) -> Pair:
+        """E e^{i k2 ξ2} and its derivatives in the parameters and in k2, (row, k2)."""
+        rows = 2 + len(self.parameters)
+        fine, coarse = (
+            np.array([smooth_characteristic_changes(law, k) for k in k2.tolist()])
+            .reshape(k2.size, rows)
+            .T
+            for law in self.laws(LAW)
+        )
+        return fine, coarse
+
+    def double_cosine_changes(self) -> Pair:
+        """Derivatives of E cos 2α in two truncations, the finer one first."""
+        fine, coarse = (
+            np.array(
+                [angle_moments(law, 0, one)[2] for one in law.stationary_derivatives]
+            )
+            for law in self.laws(LAW)
+        )
+        return fine, coarse
+
 
 def differentiable(fibre: Fibre) -> Differentiable:
     """The same fibre, known to be one whose derivatives there are."""
@@ -217,9 +261,8 @@ def differentiable(fibre: Fibre) -> Differentiable:
 
 def has_gradients(model: Any) -> bool:
     """Whether the fibre of a model is `differentiable`."""
-    return isinstance(model, LayDownModel) and isinstance(
-        model.potential, QuadraticPotential
-    )
+    known = isinstance(model, LayDownModel | SmoothLayDownModel)
+    return known and isinstance(model.potential, QuadraticPotential)
 
 
 def check_fibre(model: Any) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
@@ -15,7 +16,7 @@ from fpsolve.spectral.resolvent.plane_waves import (
 )
 from fpsolve.spectral.resolvent.waves import long_wave_halves, short_wave_equation
 
-__all__ = ["long_wave_columns", "short_wave_columns"]
+__all__ = ["long_wave_columns", "of_operator", "short_wave_columns"]
 
 
 def long_wave_columns(generator: Generator, k1: float, k2: Sequence[float]) -> Array:
@@ -33,21 +34,23 @@ def long_wave_columns(generator: Generator, k1: float, k2: Sequence[float]) -> A
         u = half.solver.solve(half.wave)
         values[half.place] += 2 * (half.row @ u).real
         solutions[half.place, half.states] = u
-        adjoints[half.place, half.states] = half.solver.solve(half.row, trans="T")
+        adjoints[half.place, half.states] = half.solver.adjoint(half.row)[0]
     columns = np.empty((len(k2), 1 + len(generator.parameters)))
     columns[:, 0] = values
     for place, (u, adjoint) in enumerate(zip(solutions, adjoints, strict=True)):
         k = k1, k2[place]
-        change = of_operator(generator, adjoint, u) + of_row(generator, k, u)
+        change = of_operator(generator.derivatives, adjoint, u) + of_row(
+            generator, k, u
+        )
         # Of i k1 v, the rest of A; v is the second parameter of every generator.
         change[generator.parameters.index("belt_speed")] -= 1j * k1 * (adjoint @ u)
         columns[place, 1:] = 2 * change.real
     return columns
 
 
-def of_operator(generator: Generator, adjoint: Complex, u: Complex) -> Complex:
-    """λ·∂L u in every parameter."""
-    return np.array([adjoint @ (change @ u) for change in generator.derivatives])
+def of_operator(changes: Sequence[Any], adjoint: Complex, u: Complex) -> Complex:
+    """λ·∂L u in every parameter, of the matrices of ∂L."""
+    return np.array([adjoint @ (change @ u) for change in changes])
 
 
 def of_row(generator: Generator, k: WaveVector, u: Complex) -> Complex:
@@ -73,8 +76,8 @@ def short_wave_columns(generator: Generator, k: WaveVector) -> Array:
     u = equation.solution()
     adjoint, nu = equation.adjoint(generator.stationary)
     changes = generator.stationary_derivatives
-    change = changes @ u + of_operator(generator, adjoint, u)
-    if equation.border is not None:
+    change = changes @ u + of_operator(generator.derivatives, adjoint, u)
+    if equation.bordered:
         change -= nu * (changes @ against_wave(generator, (-k[0], -k[1]), u))
     value = 2 * (generator.stationary @ u).real
     return np.array([value, *2 * change.real])

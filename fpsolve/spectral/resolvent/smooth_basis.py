@@ -42,8 +42,8 @@ class SmoothBasis:
     """he_m(x1) he_n(x2) {1, √2 cos kα, √2 sin kα} he_j(κ/g) in an eighth of a ball.
 
     Of (m + n)/(degree + 1), k/(harmonics + 1) and j/(curvature + 1) the sum of squares
-    is below one. The Gaussians that belong to the polynomials are those of a
-    `Placement`.
+    is below one, for j = 0 that with j = 1. The Gaussians that belong to the
+    polynomials are those of a `Placement`.
 
     Attributes
     ----------
@@ -63,10 +63,13 @@ class SmoothBasis:
     def kept(self) -> Integers:
         """Of all products the places of the states, by position first."""
         m, n = self.flat.planes
+        # L damps nothing of j = 0 but by way of j = 1: alone it is nearly null, which
+        # solutions hardly see, but their derivatives do.
+        damped = np.maximum(np.arange(self.curvature + 1), 1)
         parts = (
             (m + n)[:, None, None] / (self.degree + 1),
             self.flat.circle[0][:, None] / (self.harmonics + 1),
-            np.arange(self.curvature + 1) / (self.curvature + 1),
+            damped / (self.curvature + 1),
         )
         return np.flatnonzero(sum(part**2 for part in parts) < 1.0)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any, ClassVar
 
 import numpy as np
 from scipy import sparse
@@ -34,7 +35,13 @@ class SmoothGenerator:
     placement : Placement
         c, S1, S2, g and the exponents ϑ.
     basis : SmoothBasis
+    parameters : tuple of str
+        What it can be differentiated in.
     """
+
+    parameters: ClassVar[tuple[str, ...]] = (
+        "noise", "belt_speed", "sigma1", "sigma2", "relaxation_length",
+    )  # fmt: skip
 
     model: SmoothLayDownModel
     placement: Placement
@@ -66,7 +73,11 @@ class SmoothGenerator:
         """L; column and row are the states of the basis."""
         cosine, sine, turn = self.basis.flat.turned()
         slopes, forces = self._planes()
-        kappa, slope, relaxing = self._curvature()
+        kappa, slope, scaling, spreading = self._curvature()
+        relaxing = (
+            0.5 * self.model.curvature_noise**2 * spreading
+            - scaling / self.model.relaxation_length
+        )
         on_planes, on_circle, on_curvature = (
             _identity(one.shape[0]) for one in (slopes[0], turn, slope)
         )
@@ -100,7 +111,7 @@ class SmoothGenerator:
         return self._curvature()[0]
 
     def _curvature(self) -> tuple[sparse.csr_array, ...]:
-        """κ, ∂_κ and −(κ/R) ∂_κ + (K²/2) ∂_κκ.
+        """κ, ∂_κ, κ ∂_κ and ∂_κκ.
 
         Products are formed with two degrees more, so that no neighbour is lost.
         """
@@ -109,11 +120,8 @@ class SmoothGenerator:
         lower = sparse.diags_array(np.sqrt(np.arange(1.0, last + 3)), offsets=1).tocsr()
         kappa = root * (lower + lower.T)
         slope = (weight.exponent * lower - (1.0 - weight.exponent) * lower.T) / root
-        diffusion = 0.5 * self.model.curvature_noise**2 * (slope @ slope)
-        relaxing = diffusion - (kappa @ slope) / self.model.relaxation_length
-        return tuple(
-            one.tocsr()[: last + 1, : last + 1] for one in (kappa, slope, relaxing)
-        )
+        parts = kappa, slope, kappa @ slope, slope @ slope
+        return tuple(one.tocsr()[: last + 1, : last + 1] for one in parts)
 
     @cached_property
     def one(self) -> Array:
@@ -146,12 +154,51 @@ class SmoothGenerator:
         """
         even = self.basis.parity(1)
         inner = even[1:]
-        part = self.matrix[inner][:, inner].tocsc()
         source = self.matrix[[even[0]]][:, inner].toarray()[0]
         p = np.zeros(self.basis.size)
         p[even[0]] = 1.0
-        p[inner] = splu(part).solve(-source, trans="T")
+        p[inner] = self._inner_factors().solve(-source, trans="T")
         return p / (p @ self.one)
+
+    def _inner_factors(self) -> Any:
+        """Of L between the even states but the first one."""
+        inner = self.basis.parity(1)[1:]
+        return splu(self.matrix[inner][:, inner].tocsc())
+
+    @cached_property
+    def derivatives(self) -> tuple[sparse.csr_array, ...]:
+        """∂L in every parameter, of the same functions of ξ, α and κ.
+
+        The Gaussians are kept where they stand, whatever rule put them there. A and R
+        are the ones to be kept constant, so that K = A/R changes with both.
+        """
+        cosine, sine, turn = self.basis.flat.turned()
+        slopes, (force1, force2) = self._planes()
+        _, slope, scaling, spreading = self._curvature()
+        noise, length = self.model.noise, self.model.relaxation_length
+        on_planes, on_circle, on_curvature = (
+            _identity(one.shape[0]) for one in (slopes[0], turn, slope)
+        )
+        sigma1, sigma2 = self.scales
+        product = self.basis.product
+        by1, by2 = product(force1, sine, slope), product(-force2, cosine, slope)
+        relaxing = scaling / length**2 - noise**2 / length**3 * spreading
+        return (
+            product(on_planes, on_circle, noise / length**2 * spreading),
+            product(slopes[0], on_circle, on_curvature),
+            -2.0 / sigma1 * by1,
+            -2.0 / sigma2 * by2,
+            product(on_planes, on_circle, relaxing) - (by1 + by2) / length,
+        )
+
+    @cached_property
+    def stationary_derivatives(self) -> Array:
+        """∂p in every parameter, (parameter, state): ∂p L = −p ∂L and ∂p·1 = 0."""
+        inner, factors = self.basis.parity(1)[1:], self._inner_factors()
+        found = np.zeros((len(self.parameters), self.basis.size))
+        for row, change in zip(found, self.derivatives, strict=True):
+            row[inner] = factors.solve(-(change.T @ self.stationary)[inner], trans="T")
+        return found - np.multiply.outer(found @ self.one, self.stationary)
 
 
 def hermite_of_wave(q: float, degree: int, exponent: float) -> Array:

@@ -3,21 +3,28 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
 
 import numpy as np
 
 from fpsolve._support.arrays import Array
 from fpsolve.errors import ToleranceError
+from fpsolve.spectral.resolvent.plane_waves import WaveVector
 from fpsolve.spectral.resolvent.smooth_basis import SmoothBasis
 from fpsolve.spectral.resolvent.smooth_generator import SmoothGenerator
 from fpsolve.spectral.resolvent.smooth_ladder import SmoothLadder
 from fpsolve.spectral.resolvent.smooth_limit import smooth_short_wave_limit
+from fpsolve.spectral.resolvent.smooth_sensitivity import (
+    smooth_long_columns,
+    smooth_short_columns,
+)
 from fpsolve.spectral.resolvent.smooth_solutions import (
     along_long_waves,
     along_short_waves,
 )
 
-__all__ = ["smooth_spectrum"]
+__all__ = ["smooth_gradient", "smooth_spectrum"]
 
 # |k| in deviations of ξ up to which one factorisation per k1 serves every k2.
 LONG = 2.2
@@ -33,6 +40,72 @@ PER_ROOT, STEP, FEWEST = 3.0, 3, 4
 SHARE = 0.4
 
 
+class Method(NamedTuple):
+    """How Ŝ is computed in one truncation, alone or with its derivatives beside it.
+
+    Attributes
+    ----------
+    long : callable
+        At one k1 and many k2, (k2, column).
+    short : callable
+        Of a generator, two larger ones with their stationary laws, and a k, (law,
+        column).
+    limit : callable
+        Of a generator and a k the end of short waves, (column,).
+    n_columns : int
+    """
+
+    long: Callable[[SmoothGenerator, float, Sequence[float]], Array]
+    short: Callable[[SmoothGenerator, Sequence[SmoothGenerator], WaveVector], Array]
+    limit: Callable[[SmoothGenerator, WaveVector], Array]
+    n_columns: int
+
+
+def short_values(
+    generator: SmoothGenerator, laws: Sequence[SmoothGenerator], k: WaveVector
+) -> Array:
+    """Ŝ by each of the laws."""
+    both = [picked(generator, law, law.stationary) for law in laws]
+    return along_short_waves(generator, both, k)[:, None]
+
+
+def short_columns(
+    generator: SmoothGenerator, laws: Sequence[SmoothGenerator], k: WaveVector
+) -> Array:
+    """Ŝ and its derivatives by each of the laws."""
+    both = [picked(generator, law, law.stationary) for law in laws]
+    changes = [
+        np.array([picked(generator, law, one) for one in law.stationary_derivatives])
+        for law in laws
+    ]
+    return smooth_short_columns(generator, both, changes, k)
+
+
+def limit_columns(generator: SmoothGenerator, k: WaveVector) -> Array:
+    """The end of short waves and its derivatives."""
+    laws = generator.stationary, *generator.stationary_derivatives
+    return np.array([smooth_short_wave_limit(generator, k, law) for law in laws])
+
+
+def picked(generator: SmoothGenerator, larger: SmoothGenerator, law: Array) -> Array:
+    """What a truncation has of a law of a larger one."""
+    return np.asarray(generator.basis.picked(larger.basis.table(law)))
+
+
+VALUES = Method(
+    lambda generator, k1, k2: along_long_waves(generator, k1, k2)[:, None],
+    short_values,
+    lambda generator, k: np.array([smooth_short_wave_limit(generator, k)]),
+    1,
+)
+GRADIENTS = Method(
+    smooth_long_columns,
+    short_columns,
+    limit_columns,
+    1 + len(SmoothGenerator.parameters),
+)
+
+
 def smooth_spectrum(
     ladder: SmoothLadder, k1: Array, k2: Array, tolerance: float
 ) -> tuple[Array, Array]:
@@ -41,80 +114,115 @@ def smooth_spectrum(
     Ŝ is even in k1 and in k2: computed once for what differs. The error is at most
     `tolerance` times the larger of Ŝ and σ/(1 + |k| σ), σ the smaller throwing range.
     """
+    values, errors = _columns(ladder, k1, k2, tolerance, VALUES)
+    return values[:, 0], errors[:, 0]
+
+
+def smooth_gradient(
+    ladder: SmoothLadder, k1: Array, k2: Array, tolerance: float
+) -> tuple[Array, Array]:
+    """Ŝ and its derivatives in `SmoothGenerator.parameters`, (i, 1 + parameter).
+
+    With bounds of the errors. Of the truncations that are fine enough for Ŝ to the
+    tolerance: values and their errors are those of `smooth_spectrum`, and derivatives
+    have their own.
+    """
+    return _columns(ladder, k1, k2, tolerance, GRADIENTS)
+
+
+def _columns(
+    ladder: SmoothLadder, k1: Array, k2: Array, tolerance: float, method: Method
+) -> tuple[Array, Array]:
     points = np.stack([np.abs(k1), np.abs(k2)], axis=1)
     distinct, inverse = np.unique(points, axis=0, return_inverse=True)
-    values, errors = np.zeros(len(distinct)), np.zeros(len(distinct))
+    values, errors = np.zeros((2, len(distinct), method.n_columns))
     long = np.hypot(*(distinct * ladder.spreads).T) <= LONG
     level = 0
     for one in np.unique(distinct[long, 0]):
         found = np.flatnonzero(long & (distinct[:, 0] == one))
         values[found], errors[found], level = long_waves(
-            ladder, float(one), distinct[found, 1], tolerance, max(level - 2, 0)
+            ladder, float(one), distinct[found, 1], tolerance, max(level - 2, 0), method
         )
     level, others = 0, np.flatnonzero(~long)
     # From long to short, since what was fine enough for one is for the next.
     for place in others[np.argsort(np.hypot(*distinct[others].T), kind="stable")]:
         wave = float(distinct[place, 0]), float(distinct[place, 1])
         values[place], errors[place], level = short_wave(
-            ladder, wave, tolerance, max(level - 2, 0)
+            ladder, wave, tolerance, max(level - 2, 0), method
         )
     inverse = inverse.reshape(-1)
     return values[inverse], errors[inverse]
 
 
-def allowed(ladder: SmoothLadder, found: Array, k: Array, tolerance: float) -> Array:
-    """The largest errors of what was found."""
+def units(ladder: SmoothLadder, method: Method) -> Array:
+    """Of Ŝ and its derivatives: a parameter changes Ŝ by about its own relative change.
+
+    The speed of the belt by its change in units of that of the fibre.
+    """
+    model = ladder.model
+    lengths = *ladder.scales, model.relaxation_length
+    every = np.array([1.0, 1.0 / model.noise, 1.0, *(1.0 / one for one in lengths)])
+    return every[: method.n_columns]
+
+
+def allowed(
+    ladder: SmoothLadder, found: Array, k: Array, tolerance: float, method: Method
+) -> Array:
+    """The largest errors of what was found, (wave, column)."""
     sigma = min(ladder.scales)
-    return np.asarray(tolerance * np.maximum(np.abs(found), sigma / (1.0 + k * sigma)))
+    size = np.maximum(np.abs(found[:, :1]), sigma / (1.0 + k[:, None] * sigma))
+    return np.asarray(tolerance * size * units(ladder, method))
 
 
 def long_waves(
-    ladder: SmoothLadder, k1: float, k2: Array, tolerance: float, level: int = 0
+    ladder: SmoothLadder,
+    k1: float,
+    k2: Array,
+    tolerance: float,
+    level: int = 0,
+    method: Method = VALUES,
 ) -> tuple[Array, Array, int]:
     """Ŝ at one k1 and many k2, all of one truncation."""
     return ladder.climb(
         ladder.first,
-        lambda generator: along_long_waves(generator, k1, k2.tolist()),
-        lambda found: allowed(ladder, found, np.hypot(k1, k2), tolerance),
+        lambda generator: method.long(generator, k1, k2.tolist()),
+        lambda found: allowed(ladder, found, np.hypot(k1, k2), tolerance, method),
         level,
         MOST_LONG,
     )
 
 
 def short_wave(
-    ladder: SmoothLadder, k: tuple[float, float], tolerance: float, level: int = 0
-) -> tuple[float, float, int]:
+    ladder: SmoothLadder,
+    k: tuple[float, float],
+    tolerance: float,
+    level: int = 0,
+    method: Method = VALUES,
+) -> tuple[Array, Array, int]:
     """Ŝ at one k; far away by the law of the angle and what it lacks nearer."""
     ratio = max(1.0, math.hypot(*k) / far_of(ladder))
     nearer = k[0] / ratio, k[1] / ratio
     size = math.hypot(*nearer)
-    fine, coarse = ladder.laws(SHARE * tolerance)
-
-    def compute(generator: SmoothGenerator) -> Array:
-        basis = generator.basis
-        both = [basis.picked(law.basis.table(law.stationary)) for law in (fine, coarse)]
-        return along_short_waves(generator, both, nearer)
-
+    laws = ladder.laws(SHARE * tolerance)
+    sizes = np.full(len(laws), size)
     values, errors, level = ladder.climb(
-        first_of(ladder, size), compute,
-        lambda found: allowed(ladder, found, np.asarray(size), (1 - SHARE) * tolerance),
+        first_of(ladder, size),
+        lambda generator: method.short(generator, laws, nearer),
+        lambda found: allowed(ladder, found, sizes, (1 - SHARE) * tolerance, method),
         level, MOST_SHORT,
     )  # fmt: skip
-    value, error = float(values[0]), float(errors[0] + 2 * abs(values[0] - values[1]))
+    value, error = values[0], errors[0] + 2 * np.abs(values[0] - values[1])
     if ratio > 1:
-        ends = [smooth_short_wave_limit(law, nearer) for law in (fine, coarse)]
-        far_ends = [smooth_short_wave_limit(law, k) for law in (fine, coarse)]
         # Ŝ |k| = that of the limit + correction/|k|⁴ + …
-        correction = (value - ends[0]) / ratio**5
-        value = far_ends[0] + correction
-        error = 2 * abs(correction) + error / ratio**5
+        correction = (value - method.limit(laws[0], nearer)) / ratio**5
+        value = method.limit(laws[0], k) + correction
+        error = 2 * np.abs(correction) + error / ratio**5
     # What two truncations of the law may differ by, whatever they do at this k.
-    error += SHARE * tolerance * abs(value)
-    limit = float(
-        allowed(ladder, np.array(value), np.asarray(math.hypot(*k)), tolerance)
-    )
-    if not error <= limit:
-        raise ToleranceError(error, limit, "raise `tolerance`")
+    of_law = np.maximum(np.abs(value), np.abs(value[0]) * units(ladder, method))
+    error = error + SHARE * tolerance * of_law
+    limit = allowed(ladder, value[None], np.array([math.hypot(*k)]), tolerance, method)
+    if not error[0] <= limit[0, 0]:
+        raise ToleranceError(float(error[0]), float(limit[0, 0]), "raise `tolerance`")
     return value, error, level
 
 

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
+from numpy.typing import NDArray
 
 from fpsolve._support.arrays import Array, Complex
 from fpsolve.spectral.resolvent.plane_waves import WaveVector, between
@@ -14,6 +17,7 @@ from fpsolve.spectral.resolvent.smooth_generator import (
 __all__ = [
     "angle_moments",
     "characteristic",
+    "characteristic_changes",
     "multiplied",
     "plane_wave",
     "position_variances",
@@ -35,7 +39,28 @@ def characteristic(generator: SmoothGenerator, k: WaveVector) -> complex:
     return complex(generator.stationary @ plane_wave(generator, k))
 
 
-def multiplied(generator: SmoothGenerator, p: Array, k: WaveVector) -> Complex:
+def characteristic_changes(generator: SmoothGenerator, k2: float) -> Array:
+    """φ(0, k2) and its derivatives, in the parameters and last in k2.
+
+    Of c_m(q) = ∫ e^{iqx} … he_m the derivative is i (√(m+1) c_{m+1} + √m c_{m−1}).
+    """
+    place, degree = generator.placement, generator.basis.degree
+    along, on_curvature = generator.constant(0), generator.constant(2)
+    _, width = place.widths
+    longer = hermite_of_wave(k2 * width, degree + 1, place.exponent)
+    roots = np.sqrt(np.arange(1.0, degree + 2))
+    slopes = 1j * width * roots * longer[1:]
+    slopes[1:] += 1j * width * roots[:-1] * longer[:degree]
+    wave, by_k = (
+        generator.function(along, across, on_curvature)
+        for across in (longer[:-1], slopes)
+    )
+    p = generator.stationary
+    changes = generator.stationary_derivatives @ wave
+    return np.array([p @ wave, *changes, p @ by_k]).real
+
+
+def multiplied(generator: SmoothGenerator, p: NDArray[Any], k: WaveVector) -> Complex:
     """E e^{−ik·(ξ − c)} f in the law p, for every state f of the basis."""
     basis = generator.basis
     along, across = (
@@ -47,13 +72,18 @@ def multiplied(generator: SmoothGenerator, p: Array, k: WaveVector) -> Complex:
     return np.asarray(basis.picked(table))
 
 
-def angle_moments(generator: SmoothGenerator, power: int) -> Array:
-    """E κ^power cos kα in the stationary law, k = 0, 1, …, for an even power."""
+def angle_moments(
+    generator: SmoothGenerator, power: int, law: Array | None = None
+) -> Array:
+    """E κ^power cos kα in the stationary law, k = 0, 1, …, for an even power.
+
+    Or of another `law`, a derivative of it, say.
+    """
     basis = generator.basis
     curvature = generator.constant(2)
     for _ in range(power):
         curvature = generator.curvatures @ curvature
-    table = basis.table(generator.stationary)
+    table = basis.table(generator.stationary if law is None else law)
     along, across = generator.constant(0), generator.constant(1)
     moments = np.einsum("mnaj,m,n,j->a", table, along, across, curvature, optimize=True)
     cosine = basis.flat.circle[1]
