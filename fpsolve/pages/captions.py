@@ -151,6 +151,11 @@ CAPTIONS = {
         "parameter.",
         "Curves of the variation against throughput, and bars of its sensitivities",
     ),
+    "nozzle-design/pattern": (
+        "CV of the mean pattern wherever it was computed; star: optimum, shaded or "
+        "framed: where it may be.",
+        "Variation of the pattern against the free numbers of the nozzle, logarithmic",
+    ),
     "web-homogeneity/zones": (
         "CV of square zones against their side; lines: predicted; markers: laid webs "
         "with standard errors.",

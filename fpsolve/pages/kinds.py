@@ -39,6 +39,7 @@ PAGES: dict[str, str | Callable[[Any, str], Section]] = {
     "white-noise": "fpsolve.pages.white_noise:white_section",
     "web-homogeneity": "fpsolve.pages.homogeneity:section",
     "web-design": "fpsolve.pages.design:section",
+    "nozzle-design": "fpsolve.pages.nozzle_design:section",
     "small-noise": "fpsolve.pages.limits:small_section",
     "small-noise-spectrum": "fpsolve.pages.limits:spectrum_section",
     "energy-tables": "fpsolve.pages.energy:section",

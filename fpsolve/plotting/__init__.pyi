@@ -27,6 +27,7 @@ from .limits import plot_white_noise as plot_white_noise
 from .marginals import plot_marginals as plot_marginals
 from .moments import plot_moments as plot_moments
 from .movie import movie as movie
+from .nozzle_design import plot_nozzle_design as plot_nozzle_design
 from .overview import plot_overview as plot_overview
 from .pattern import plot_pattern as plot_pattern
 from .periodic import plot_periodic_state as plot_periodic_state

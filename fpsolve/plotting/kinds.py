@@ -29,6 +29,7 @@ from fpsolve.plotting.identification import plot_identified_fibres, plot_increme
 from fpsolve.plotting.limits import plot_large_noise, plot_white_noise
 from fpsolve.plotting.marginals import plot_marginals
 from fpsolve.plotting.moments import plot_moments
+from fpsolve.plotting.nozzle_design import plot_nozzle_design
 from fpsolve.plotting.overview import plot_overview
 from fpsolve.plotting.pattern import plot_pattern
 from fpsolve.plotting.periodic import plot_periodic_state
@@ -182,6 +183,7 @@ FIGURES: dict[str, Callable[[Any], Figures]] = {
     "white-noise": each(distances=(plot_white_noise, known("distance"))),
     "web-homogeneity": each(zones=(plot_web_homogeneity, known("z"))),
     "web-design": each(design=(plot_web_design, always)),
+    "nozzle-design": each(pattern=(plot_nozzle_design, always)),
     "small-noise": each(distances=(plot_small_noise, known("distance"))),
     "small-noise-spectrum": each(spectrum=(plot_small_noise_spectrum, always)),
     "energy-tables": of_energy_tables,

@@ -174,6 +174,11 @@ KINDS = {
         "designs of webs", "fpsolve.studies.design.design_web:design_web",
         "fpsolve.studies.design.result:WebDesign",
     ),
+    "nozzle-design": Kind(
+        "designs of moving nozzles",
+        "fpsolve.studies.nozzles.design_nozzles:design_nozzles",
+        "fpsolve.studies.nozzles.result:NozzleDesign",
+    ),
     "small-noise": Kind(
         "distances to the limit of small noise",
         "fpsolve.studies.limits.small_noise:small_noise_limit", counts="cases",

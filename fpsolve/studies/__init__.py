@@ -5,7 +5,8 @@ agree; `compare` does so for results that exist already. `ergodic_averages` meas
 how time averages converge to those of the equilibrium. `rate_versus_noise` puts decay
 rates of runs, spectra and proven bounds side by side, and `sweep` runs any function
 over many cases, in processes or on a cluster. `design_web` finds the process that lays
-the most even web. The names are loaded on first use.
+the most even web, `design_nozzles` how nozzles should move. The names are loaded on
+first use.
 """
 
 from fpsolve._support.lazy import attach

@@ -23,6 +23,8 @@ from .limits.orders import fitted_order as fitted_order
 from .limits.orders import observed_orders as observed_orders
 from .limits.small_noise import small_noise_limit as small_noise_limit
 from .limits.white_noise import white_noise_limit as white_noise_limit
+from .nozzles.design_nozzles import design_nozzles as design_nozzles
+from .nozzles.result import NozzleDesign as NozzleDesign
 from .rates.poisson import asymptotic_variances as asymptotic_variances
 from .rates.rate_versus_noise import rate_versus_noise as rate_versus_noise
 from .sweeps.sweep import Case as Case

@@ -17,7 +17,7 @@ from fpsolve.evolution.layout import (
     check_dimensions,
 )
 
-__all__ = ["PATTERN"]
+__all__ = ["PATTERN", "Phases"]
 
 _WAVES = ("n", "m")
 _CELL = ("x2", "x1")
@@ -59,17 +59,19 @@ class _Coefficients(Part):
         return {"coefficients": coefficients, "errors": errors}
 
 
-class _Phases(Part):
+class Phases(Part):
     """What was said of the phases: a word, or angles."""
 
     needed = ("nozzle_phases",)
 
     def write(self, result: Any) -> Stored:
+        """The word, or the angles, in a list."""
         phases = result.phases
         told = [phases] if isinstance(phases, str) else list(phases)
         return {"nozzle_phases": to_json(told)}
 
     def read(self, source: Source) -> dict[str, Any]:
+        """The same."""
         told = source.about["nozzle_phases"]
         if told in (["in phase"], ["independent"]):
             return {"phases": told[0]}
@@ -99,7 +101,7 @@ PATTERN = Layout(
     Variable("spacing", (), "distance of neighbouring nozzles", kind=_positive),
     Variable("mean", (), "mean length of fibre per area, 1/(v d)", kind=_positive),
     _Coefficients(),
-    _Phases(),
+    Phases(),
     Variable("length_density", _CELL, "expected length of fibre per area",
              values=lambda result: result.length_density),
     Variable("x1", ("x1",), "along the belt", values=lambda result: result.x1),

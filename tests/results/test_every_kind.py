@@ -174,6 +174,11 @@ MAKERS = {
         QUADRATIC, [2.0], [0.5], [0.5], zones=[0.5, 2.0], n_webs=2, tolerance=0.05,
         workers=0,
     ),
+    # Bounds that the resolution of a search hardly divides, so that it is short.
+    "nozzle-design": lambda: studies.design_nozzles(
+        TURNING, [0.5, 1.0], spacing=3.0, bounds={"angular_speed": (0.5, 0.505)},
+        n_scan=3, tolerance=0.2, n_webs=2, phases=[0.0, 1.0],
+    ),
     "web-design": lambda: studies.design_web(
         fp.Process(5e-3, 5e-3, 25.0, 0.1, 50.0), {0.01: 0.0155, 0.02: 0.0155},
         spacing=2e-3, titer=1e-4, free=["noise", "speed_ratio", "spacing"],
@@ -342,6 +347,7 @@ NUMBERS = {
     "fibre-motion": lambda found: f"{found.energy[-1]:.6g} J at last",
     "fibre-lay-down": lambda found: f"{found.fed:.6g} m",
     "web": lambda found: f"{found.mean_length_density():.6g}",
+    "nozzle-design": lambda found: f"{found.values[0]:.5g}",
     "web-design": lambda found: f"{found.cv[0]:.5g}",
     "averages": lambda found: f"{float(found['expectation'][0]):.6g}",
     "small-noise-spectrum": lambda found: f"{float(found['limit'][0]):.6g}",

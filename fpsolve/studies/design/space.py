@@ -157,7 +157,8 @@ def checked_names(free: Any) -> tuple[str, ...]:
         raise ValueError(
             f"`free` must be among {', '.join(PARAMETERS)}, got "
             f"{', '.join(map(shown, unknown)) or 'none'}; the web depends on nothing "
-            "else that `predict_web` knows, and moving nozzles it does not predict."
+            "else that `predict_web` knows, and moving nozzles it does not predict: "
+            "`design_nozzles` has their frequency and radii, for the pattern they lay."
         )
     bound = [one for one in BASE_WEIGHT if one in named]
     if len(bound) == 1:
