@@ -5,9 +5,23 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
-from fpsolve._support.checks import check_call, check_noise, shown
+from fpsolve._support.checks import (
+    check_call,
+    check_integer,
+    check_noise,
+    check_positive,
+    has_length,
+    shown,
+)
 
-__all__ = ["check_functions", "chosen_parts", "noises_of", "series_of"]
+__all__ = [
+    "check_functions",
+    "checked_pair",
+    "chosen_parts",
+    "noises_of",
+    "series_of",
+    "several",
+]
 
 
 def series_of(values: Any, name: str = "noises", what: str = "numbers") -> list[Any]:
@@ -60,3 +74,24 @@ def check_functions(functions: Any) -> dict[str, Callable[..., Any]]:
     for name, function in functions.items():
         check_call(f"functions[{name!r}]", function, "f(xi1, xi2, alpha)")
     return {str(name): function for name, function in functions.items()}
+
+
+def checked_pair(name: str, pair: Any) -> tuple[float, float]:
+    """Lowest and highest value; ValueError unless 0 < lowest < highest."""
+    called = f"bounds[{name!r}]"
+    if not has_length(pair, 2):
+        raise ValueError(f"`{called}` must be (lowest, highest), got {shown(pair)}.")
+    low, high = (check_positive(called, end) for end in pair)
+    if not low < high:
+        raise ValueError(
+            f"`{called}` must be (lowest, highest), got ({low:g}, {high:g})."
+        )
+    return low, high
+
+
+def several(name: str, value: Any) -> int:
+    """The number; ValueError below 0, and for one alone, which has no spread."""
+    number = check_integer(name, value, at_least=0)
+    if number == 1:
+        raise ValueError(f"`{name}` must be 0 or at least 2, got 1; one has no spread.")
+    return number

@@ -11,8 +11,8 @@ import numpy as np
 from scipy.optimize import brentq
 
 from fpsolve._support.arrays import Array
-from fpsolve._support.checks import check_positive, has_length, shown
-from fpsolve.studies.arguments import series_of
+from fpsolve._support.checks import shown
+from fpsolve.studies.arguments import checked_pair, series_of
 from fpsolve.studies.design.settings import (
     BASE_WEIGHT,
     OF_PROCESS,
@@ -193,16 +193,3 @@ def checked_bounds(
         )
     given = {name: checked_pair(name, pair) for name, pair in bounds.items()}
     return {name: given.get(name, (0.0, math.inf)) for name in names}
-
-
-def checked_pair(name: str, pair: Any) -> tuple[float, float]:
-    """Lowest and highest value; ValueError unless 0 < lowest < highest."""
-    called = f"bounds[{name!r}]"
-    if not has_length(pair, 2):
-        raise ValueError(f"`{called}` must be (lowest, highest), got {shown(pair)}.")
-    low, high = (check_positive(called, end) for end in pair)
-    if not low < high:
-        raise ValueError(
-            f"`{called}` must be (lowest, highest), got ({low:g}, {high:g})."
-        )
-    return low, high

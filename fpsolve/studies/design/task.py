@@ -14,6 +14,7 @@ from fpsolve._support.checks import (
 from fpsolve.model.process import Process
 from fpsolve.spectral.evolution.quadratic import check_model, checked_tolerance
 from fpsolve.spectral.resolvent.fibre import scales_of
+from fpsolve.studies.arguments import several
 from fpsolve.studies.design.front import SPEED
 from fpsolve.studies.design.settings import Settings
 from fpsolve.studies.design.space import Space, space_of
@@ -100,11 +101,3 @@ def checked_start(process: Any, spacing: Any, titer: Any) -> Settings:
         )
     checked_titer(check_positive("titer", titer), process)
     return Settings(process, check_positive("spacing", spacing), float(titer))
-
-
-def several(name: str, value: Any) -> int:
-    """The number; ValueError below 0, and for one alone, which has no spread."""
-    number = check_integer(name, value, at_least=0)
-    if number == 1:
-        raise ValueError(f"`{name}` must be 0 or at least 2, got 1; one has no spread.")
-    return number

@@ -13,8 +13,7 @@ from fpsolve._support.checks import check_integer, check_positive, shown
 from fpsolve.evolution.call import recorded
 from fpsolve.model.laydown import LayDownModel
 from fpsolve.spectral.evolution.quadratic import checked_tolerance
-from fpsolve.studies.design.space import checked_pair
-from fpsolve.studies.design.task import several
+from fpsolve.studies.arguments import checked_pair, several
 from fpsolve.studies.nozzles.confirm import laid_squares
 from fpsolve.studies.nozzles.patterns import Asked, Patterns
 from fpsolve.studies.nozzles.result import NozzleDesign
