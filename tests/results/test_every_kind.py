@@ -118,6 +118,9 @@ MAKERS = {
     "spectral": lambda: fp.spectral_solve(
         REST, NARROW, [0.0, 1.0], tolerance=1e-2
     ),
+    "spectral, on a belt": lambda: fp.spectral_solve(
+        BELT, NARROW, [0.0, 1.0], tolerance=1e-2
+    ),
     "spectral, from a grid": lambda: fp.spectral_solve(
         REST, (FINER, start_on(FINER)), [1.0], tolerance=1e-2
     ),
@@ -476,13 +479,29 @@ def test_a_call_that_does_not_fit_its_result_is_not_repeated(name, changes, reas
 
 
 def test_a_tampered_expansion_is_refused_by_name():
-    dataset = result("spectral").to_xarray()
+    dataset = result("spectral, on a belt").to_xarray()
     wrong = dataset.assign(limit=("held_degree", dataset["limit"].values + 1))
     with pytest.raises(ValueError, match="`coefficient` must fill the limits"):
         from_xarray(wrong)
     with pytest.raises(ValueError, match="`limit` must hold harmonics of every degree"):
         from_xarray(dataset.assign(limit=("held_degree", dataset["limit"].values * 0
                                              + 10**6)))  # fmt: skip
+
+
+def test_tampered_sectors_are_refused_by_name():
+    dataset = result("spectral").to_xarray()
+    counts = dataset["held_count"].values
+    with pytest.raises(ValueError, match="`held_count` must hold counts of every row"):
+        from_xarray(dataset.assign(held_count=("held_row", counts - 1)))
+    with pytest.raises(
+        ValueError, match=r"`coefficient` must be .* as in `held_count`"
+    ):
+        from_xarray(dataset.assign(held_count=("held_row", counts + 4)))
+    rows = dataset["n_rows"]
+    with pytest.raises(ValueError, match=r"`n_rows` must be .* as in `held_count`"):
+        from_xarray(dataset.assign(n_rows=rows + 2))
+    with pytest.raises(ValueError, match="`held_count` must be zero in outer rows"):
+        from_xarray(dataset.assign(held_count=("held_row", np.roll(counts, 1))))
 
 
 def test_what_is_no_result_is_named():

@@ -450,7 +450,9 @@ def test_what_is_not_a_density_is_refused(change, message):
 
 def test_memory_that_does_not_suffice_is_told():
     with pytest.raises(MemoryLimitError, match="ask for fewer `s`"):
-        spectral_solve(MODEL, START, 1.0, memory_limit=10**6)
+        spectral_solve(NARROW, SLIM, 1.0, memory_limit=10**6)
+    with pytest.raises(MemoryLimitError, match="ask for fewer `s`"):
+        spectral_solve(MODEL, START, 1.0, memory_limit=10**5)
     # A point-like start: just after it, and for a while, it needs too many degrees.
     needle = GaussianLaw((1.0, 0.0), 0.01, 0.0, 1.0)
     turning = fp.LayDownModel(fp.QuadraticPotential(), 2.0)

@@ -181,6 +181,19 @@ def best(found: list[Found], target: float) -> Found | None:
     return min(within, key=lambda one: one.cpu, default=None)
 
 
+def print_ratios(
+    ours: list[Found], peers: list[Found], targets: tuple[float, ...]
+) -> None:
+    """The cheapest of both within each error, and how many times faster ours is."""
+    print(f"{'error':>6} {'ours, ms':>9} {'peer, ms':>9} {'ratio':>6}")
+    for target in targets:
+        one, other = best(ours, target), best(peers, target)
+        times = [f"{1e3 * x.cpu:9.2f}" if x else f"{'-':>9}" for x in (one, other)]
+        ratio = f"{other.cpu / one.cpu:6.1f}" if one and other else f"{'-':>6}"
+        print(f"{target:6.0e} {times[0]} {times[1]} {ratio}  {one.name if one else ''}"
+              f" | {other.name if other else ''}")  # fmt: skip
+
+
 def report(noise: float, choice: Choice) -> None:
     """Print one table."""
     scheme = scheme_of(noise, choice.reference.shape)
@@ -193,13 +206,7 @@ def report(noise: float, choice: Choice) -> None:
           f"{nearest:.1e} of it")  # fmt: skip
     covers = [one.told / one.error for one in ours if one.error > SHARP]
     print(f"ours tell {min(covers):.2g} to {max(covers):.2g} times their errors")
-    print(f"{'error':>6} {'ours, ms':>9} {'peer, ms':>9} {'ratio':>6}")
-    for target in TARGETS:
-        one, other = best(ours, target), best(peers, target)
-        times = [f"{1e3 * x.cpu:9.2f}" if x else f"{'-':>9}" for x in (one, other)]
-        ratio = f"{other.cpu / one.cpu:6.1f}" if one and other else f"{'-':>6}"
-        print(f"{target:6.0e} {times[0]} {times[1]} {ratio}  {one.name if one else ''}"
-              f" | {other.name if other else ''}")  # fmt: skip
+    print_ratios(ours, peers, TARGETS)
 
 
 def main(arguments: list[str] | None = None) -> None:

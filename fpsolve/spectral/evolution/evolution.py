@@ -38,14 +38,24 @@ def spectral_solve(
 ) -> SpectralSolution | SmoothSpectralSolution:
     """H(p|p_S) and moments at s, for B quadratic, by expansion in Hermite × Fourier.
 
-    p/p_S is expanded in the basis He_i(ξ1/σ1) He_j(ξ2/σ2) e^{ikα}, orthonormal in
-    L²(μ), where (7) is a sparse matrix; its exponential is applied by Chebyshev
-    series, and which coefficients are kept follows the solution. Nothing of a grid
-    scheme is used. Exact: the norm balance d‖h‖²/ds = −A²‖∂_α h‖² on a fixed belt.
-    Conserved: mass, up to the tolerance of the exponential. Refined until two
-    truncations agree to `tolerance` in every number at every s. The entropy converges
-    last, most slowly just after a narrow start; low noise lets the density fold and
-    needs many more degrees and harmonics.
+    p/p_S is expanded in functions orthonormal in L²(μ), where (7) is a sparse matrix;
+    its exponential is applied by Chebyshev series, and which coefficients are kept
+    follows the solution. Nothing of a grid scheme is used. Exact: the norm balance
+    d‖h‖²/ds = −A²‖∂_α h‖² on a fixed belt.
+
+    For an isotropic B on a belt at rest the functions are circular Hermite functions
+    times e^{ikα}, which split by the angular index M = l + k into sectors: small real
+    recurrences, of which those present in p0 are evolved, one by one. (7) is
+    dissipative in L²(μ), so that what is left out is at most as large later: every
+    number has a bound from the norms left out at each fitting, the tolerances of the
+    series, and E² = 2 ∫ ‖edge‖ ‖(1 − P) L* h‖ ds, what flows out of the coefficients P
+    kept, with the norm of the last of them for those beyond. Mass is conserved exactly.
+
+    Otherwise the basis is He_i(ξ1/σ1) He_j(ξ2/σ2) e^{ikα}, refined until two
+    truncations agree to `tolerance` in every number at every s. Mass is conserved up to
+    the tolerance of the exponential. In both the entropy converges last, most slowly
+    just after a narrow start; low noise lets the density fold and needs many more
+    degrees and harmonics.
 
     Of a smooth model there are the moments only, with those of κ and without H. The
     density is expanded in circular Hermite functions of ξ, Hermite functions of κ and
@@ -89,7 +99,7 @@ def spectral_solve(
     MemoryLimitError
         If not even the two coarsest truncations fit.
     ToleranceError
-        If the tolerance is not reached within the memory, the work or five refinements.
+        If the tolerance is not reached within the memory, the work or the refinements.
 
     References
     ----------

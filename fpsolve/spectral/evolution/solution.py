@@ -16,10 +16,11 @@ from fpsolve.evolution.saved import Saved
 from fpsolve.evolution.schedule import index_of
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.model.laydown import LayDownModel
-from fpsolve.spectral.evolution import quadrature
+from fpsolve.spectral.evolution import quadrature, rings
 from fpsolve.spectral.evolution.expansion import Expansion
 from fpsolve.spectral.evolution.layout import SOLUTION
 from fpsolve.spectral.evolution.quadratic import quadratic
+from fpsolve.spectral.evolution.sector_expansion import SectorExpansion
 from fpsolve.spectral.evolution.steady import SpectralSteadyState, spectral_steady_state
 
 __all__ = ["SpectralSolution"]
@@ -39,10 +40,12 @@ class SpectralSolution(WithSeries, Saved):
     s : ndarray, shape (n,)
     series : dict of ndarray
     errors : dict of ndarray
-        One estimate for each number of `series`: the change from the next coarser
-        truncation, which bounds the error as long as refinement helps, plus what
-        rounding did to the mass and, for the entropy, its quadrature. Zero where a
-        value is known in closed form.
+        One estimate for each number of `series`. In sectors (isotropic B on a belt at
+        rest) a bound from what was left out, see `spectral_solve`, and rounding.
+        Otherwise the change from the next coarser truncation, which bounds the error as
+        long as refinement helps, plus what rounding did to the mass. For the entropy
+        that of its quadrature is added. Next to zero where a value is known in closed
+        form.
     truncation : tuple of (int, int)
         Degree and largest harmonic kept at each s.
     tolerance : float
@@ -61,7 +64,7 @@ class SpectralSolution(WithSeries, Saved):
     errors: dict[str, Array]
     truncation: tuple[tuple[int, int], ...]
     tolerance: float
-    _expansions: tuple[Expansion, ...]
+    _expansions: tuple[Expansion, ...] | tuple[SectorExpansion, ...]
     call: Call | None = None
     provenance: dict[str, Any] = field(default_factory=dict)
 
@@ -86,8 +89,10 @@ class SpectralSolution(WithSeries, Saved):
         if place is None:
             *known, got = told_apart(*self.s.tolist(), s)
             raise ValueError(f"`s` must be one of {', '.join(known)}, got {got}.")
-        potential = quadratic(self.model)
-        return quadrature.density_on(self._expansions[place], grid, potential)
+        potential, h = quadratic(self.model), self._expansions[place]
+        if isinstance(h, SectorExpansion):
+            return rings.density_on(h, grid, potential.sigma1)
+        return quadrature.density_on(h, grid, potential)
 
     @cached_property
     def steady_state(self) -> SpectralSteadyState:

@@ -17,7 +17,7 @@ from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.model.laydown import LayDownModel
 from fpsolve.model.potentials.quadratic import QuadraticPotential
 from fpsolve.spectral.agreement import excess, failure
-from fpsolve.spectral.evolution import quadrature
+from fpsolve.spectral.evolution import quadrature, sector_transient
 from fpsolve.spectral.evolution.expansion import Expansion, spread
 from fpsolve.spectral.evolution.exponential import ForwardOperator
 from fpsolve.spectral.evolution.layout import SERIES
@@ -62,6 +62,12 @@ def transient(
     budget = allowed_memory(memory_limit)
     result: SpectralSolution | None = None
     try:
+        if sector_transient.applies(model):
+            result = sector_transient.in_sectors(
+                model, start, stops, tolerance, budget, work
+            )
+            if result is not None and excess(result) <= 1:
+                return result
         coarse = run(model, start, stops, level(0, tolerance, budget, stops.size), work)
         for refinement in range(1, LEVELS):
             try:
