@@ -93,6 +93,11 @@ def root(lanes):
     return np.sqrt(lanes)
 
 
+def below(lanes):
+    """The largest whole numbers that are not above."""
+    return np.floor(lanes)
+
+
 def parts(lanes):
     """The four values as numbers."""
     return tuple(lanes)
@@ -233,6 +238,16 @@ def root_lanes(_, lanes):
 
 
 @intrinsic
+def floor_of_lanes(_, lanes):
+    """`below` in compiled code."""
+
+    def code(context, builder, signature, arguments):
+        return builder.call(vector_function(builder, "floor", 1), arguments)
+
+    return lanes_type(lanes), code
+
+
+@intrinsic
 def fused_lanes(_, a, b, c):
     """`fused` in compiled code."""
 
@@ -329,6 +344,12 @@ def compiled_mantissa_and_exponent(lanes):
 def compiled_root(lanes):
     """Implementation for numba."""
     return lambda lanes: root_lanes(lanes)
+
+
+@overload(below, inline="always")
+def compiled_below(lanes):
+    """Implementation for numba."""
+    return lambda lanes: floor_of_lanes(lanes)
 
 
 @overload(fused, inline="always")

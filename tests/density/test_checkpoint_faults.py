@@ -610,3 +610,12 @@ def test_the_files_can_be_read_without_fpsolve(begun):
         "s", "xi1", "xi2", "alpha",
     )  # fmt: skip
     np.testing.assert_array_equal(store["pass-1/density"][0], P0)
+
+
+def test_a_run_of_older_arithmetic_is_not_continued(tmp_path, monkeypatch):
+    scheme = SCHEMES["semi_lagrangian"]
+    with monkeypatch.context() as older:
+        older.delattr(semi_lagrangian, "revision")
+        folder = left_at(4, tmp_path / "run", scheme=scheme)
+    with pytest.raises(CheckpointMismatchError, match=r"revision` was not given, is 2"):
+        run(folder, scheme=scheme)

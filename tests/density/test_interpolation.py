@@ -2,10 +2,11 @@
 
 import numpy as np
 import pytest
+from kernel_cases import at_rest
 from orders import assert_order, measure_order
 from problems import FreeStreaming, FrozenRotation
 
-from fpsolve._kernels.characteristics import interpolate_at_feet
+from fpsolve._kernels.characteristics import Displacement, interpolate_at_feet
 from fpsolve.density.schemes import drift_kick, semi_lagrangian
 from fpsolve.density.schemes.rotation import RotationDiffusion
 from fpsolve.density.schemes.stencils import flux_weights, lagrange_weights
@@ -70,25 +71,61 @@ def test_a_translation_follows_every_reference_curve_exactly(curve):
     assert l1_distance(end, problem.density(1.3), problem.grid) < 1e-6
 
 
+def feet_anywhere(n):
+    """Shape and sizes of a box, its cells, and a random foot for each of them."""
+    shape = (n, n + 2, n + 4)
+    sizes = np.array(shape).reshape(3, 1, 1, 1)
+    cells = np.indices(shape).astype(float)
+    shifts = np.random.default_rng(5).uniform(-0.5, 0.5, (3, *shape))
+    return shape, sizes, cells, cells + shifts * sizes
+
+
 @pytest.mark.parametrize(("n_points", "ceiling"), [(4, 5e-5), (6, 3e-7)])
 def test_values_at_feet_are_of_the_order_of_their_stencil(n_points, ceiling):
     # A smooth periodic function at random feet, in all three directions at once.
     def error_of(n):
-        rng = np.random.default_rng(5)
-        shape = (n, n + 2, n + 4)
-        sizes = np.array(shape).reshape(3, 1, 1, 1)
-        cells = np.indices(shape).astype(float)
-        feet = cells + rng.uniform(-0.5, 0.5, (3, *shape)) * sizes
+        shape, sizes, cells, feet = feet_anywhere(n)
 
         def function(places):
             x, y, z = 2 * np.pi * places / sizes
             return np.sin(x) * np.cos(y) + np.sin(z + x)
 
-        out, none = np.empty(shape), np.zeros((1, 1, 1))
-        interpolate_at_feet(function(cells), feet, none, n_points, False, out)
+        out, ones = np.empty(shape), np.ones((1, 1, 1))
+        interpolate_at_feet(
+            function(cells), feet, ones, at_rest(shape), n_points, False, ones[:0], out
+        )
         return np.abs(out - function(feet)).mean()
 
     assert_order(measure_order(error_of, first=16), n_points, ceiling)
+
+
+@pytest.mark.parametrize("n_points", [4, 6])
+def test_what_moving_the_feet_changes_is_a_derivative_of_second_order(n_points):
+    # |δ·∇h − (δ·∇B) h| of a smooth periodic function, with δ the same part of the box
+    # on every grid.
+    def error_of(n):
+        shape, sizes, cells, feet = feet_anywhere(n)
+        ones, line, plane = np.ones(shape[2]), np.zeros(shape[2]), np.ones(shape[:2])
+        move1, move2, turn = 0.3 * n, -0.2 * (n + 2), 0.1 * (n + 4)
+        displacement = Displacement(
+            move1 * ones, move2 * ones, plane, plane, line, ones, turn, 0.4 * ones, line
+        )
+        x, y, z = 2 * np.pi * cells / sizes
+        h = np.sin(x) * np.cos(y) + np.sin(z + x)
+        changes, out = np.empty(shape), np.empty(shape)
+        growth = np.full(shape, 2.0)
+        interpolate_at_feet(
+            h, feet, growth, displacement, n_points, False, changes, out
+        )
+        x, y, z = 2 * np.pi * feet / sizes
+        along = 0.3 * (np.cos(x) * np.cos(y) + np.cos(z + x))
+        along += 0.2 * np.sin(x) * np.sin(y) + 0.1 * np.cos(z + x)
+        value = np.sin(x) * np.cos(y) + np.sin(z + x)
+        expected = 2.0 * np.abs(2 * np.pi * along - 0.4 * value)
+        return np.abs(changes - expected).mean()
+
+    # 4.5e-3 with either stencil.
+    assert_order(measure_order(error_of, first=16), 2, 1e-2)
 
 
 @pytest.mark.parametrize(("order", "ceiling"), [(4, 5e-5), (6, 8e-7)])

@@ -6,6 +6,7 @@ from numba import njit
 
 from fpsolve._kernels import functionals, lanes
 from fpsolve._kernels.lanes import (
+    below,
     larger,
     mantissa_and_exponent,
     parts,
@@ -33,6 +34,11 @@ def comparisons(rows, out):
     put(out, (1, 0), larger(a, b))
 
 
+def whole_parts(rows, out):
+    put(out, (0, 0), below(take(rows, (0, 0))))
+    put(out, (1, 0), below(-take(rows, (1, 0))))
+
+
 def roots_and_parts(rows, out):
     put(out, (0, 0), root(take(rows, (0, 0))))
     out[1, 0], out[1, 1], out[1, 2], out[1, 3] = parts(take(rows, (1, 0)))
@@ -55,7 +61,8 @@ def splitting(rows, out):
 
 
 @pytest.mark.parametrize(
-    "function", [arithmetic, comparisons, roots_and_parts, columns, splitting]
+    "function",
+    [arithmetic, comparisons, whole_parts, roots_and_parts, columns, splitting],
 )
 def test_lanes_do_in_registers_what_numpy_does_with_four_values(function, rng):
     rows = rng.uniform(0.1, 9.0, (4, 6))

@@ -13,7 +13,7 @@ import numpy as np
 
 import fpsolve as fp
 from fpsolve._kernels import threads
-from fpsolve._kernels.tridiagonal import eliminate
+from fpsolve._kernels.tridiagonal import solve_four
 from fpsolve.density.schemes.diffusion import ImplicitDiffusion
 from fpsolve.density.schemes.rotation import RotationDiffusion
 
@@ -148,9 +148,11 @@ def diffusion():
 
 def elimination():
     """That helper alone."""
-    factors, row = ImplicitDiffusion(MODEL, GRID).factors(0.25), START[0, 0].copy()
-    eliminate(factors.pivots, factors.numbers[2], row)
-    return digest(row)
+    factors = ImplicitDiffusion(MODEL, GRID).factors(0.25)
+    four = np.ascontiguousarray(START[0, :4].T)
+    solved = np.empty_like(four)
+    solve_four(four, *factors, solved)
+    return digest(solved)
 
 
 # Kernels that a test compiles once more.

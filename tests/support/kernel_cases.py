@@ -3,7 +3,7 @@
 import numpy as np
 
 from fpsolve._kernels import functionals
-from fpsolve._kernels.characteristics import Displacement
+from fpsolve._kernels.characteristics import N_SCRATCH, Displacement
 from fpsolve._kernels.fourier_shift import Direction
 from fpsolve.density.schemes.diffusion import ImplicitDiffusion
 from fpsolve.density.schemes.fourier_translation import blocked, shift_weights
@@ -12,6 +12,13 @@ from fpsolve.density.schemes.stencils import flux_taps, shift_taps
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.model.laydown import LayDownModel
 from fpsolve.model.potentials import QuadraticPotential
+
+
+def at_rest(shape):
+    """No displacement between feet."""
+    n1, n2, n = shape
+    line, plane = np.zeros(n), np.zeros((n1, n2))
+    return Displacement(line, line, plane, plane, line, line, 0.0, line, line)
 
 
 class Arguments:
@@ -92,16 +99,13 @@ class Arguments:
     def turning(self):
         return RotationDiffusion(self.model, self.grid, positive=True)
 
-    def feet_kernel(self, limited):
-        return self.p, self.feet, self.growth, 6, limited, self.out()
-
-    def perturbed_kernel(self, points, limited, growth):
+    def feet_kernel(self, points, limited, *, moves=True, grows=True):
         plane = self.rng.normal(size=(2, self.n1, self.n2))
         line = self.rng.normal(size=(6, self.n))
         return (
-            self.p, self.feet, growth,
+            self.p, self.feet, self.growth if grows else np.ones((1, 1, 1)),
             Displacement(*line[:2], *plane, *line[2:4], 0.3, *line[4:]),
-            points, limited, True, self.out(),
+            points, limited, self.out() if moves else np.zeros((0, 0, 0)), self.out(),
         )  # fmt: skip
 
     def sums_kernel(self, logarithms):
@@ -139,40 +143,23 @@ class Arguments:
         lead, padded = 3, self.normal(self.n2 + 7, n)
         scale = self.rng.uniform(size=self.n1 * self.n2)
         flat, plane = p.reshape(-1, n), np.zeros((self.n2, n))
-        four, six = np.array([5, 6, 7, 0]), np.array([5, 6, 7, 0, 1, 2])
-        four_weights, six_weights = self.rng.normal(size=(2, 6))
         at = (-3.4, 6.9, 20.2)
         elimination = ImplicitDiffusion(self.model, self.grid).factors(0.3)
         flux, donor = self.fluxes[0]
         work = np.zeros((2, self.n2, n))
-        none = np.zeros((1, 1, 1))
         heat = np.exp(-0.3 * np.arange(n // 2) ** 2)
         return {
             "following": [(2, 5), (4, 5)],
             "wrapped": [(-1.0, 5), (-18.0, 6), (3.0, 5), (21.0, 7)],
-            "four_from": [(-1.0, 5), (3.0, 5), (12.0, 7)],
-            "cubic_weights": [(0.0,), (0.3,), (0.999,)],
-            "quintic_weights": [(0.0,), (0.3,), (0.999,)],
-            "wrapped_line": [(row[0], four, four_weights)],
-            "wrapped_plane": [(row, four % self.n2, four, six_weights, four_weights)],
-            "plane_sums": [(row, four % self.n2, 2, six_weights)],
-            "value_cubic": [(p, *at), (p, 0.0, 1.0, 2.0)],
-            "line_quintic": [(row[0], six, six_weights)],
-            "value_quintic": [(p, *at), (p, 0.0, 1.0, 2.0)],
             "nodes_around": [(2.4,), (3.0,), (3.0 - 1e-12,), (-0.5,)],
-            "clipped": [
-                (p, *at, 0.5), (p, *at, 9.0), (p, *at, -9.0), (p, 2.0, 1.0, 2.5, 9.0),
-            ],
-            "value_at": [(p, *at, 4, False), (p, *at, 6, True)],
+            "range_around": [(p, *at), (p, 2.0, 1.0, 2.5)],
+            "limit": [(p, self.feet[:, 0, 0], self.rng.uniform(0.0, 2.0, N_SCRATCH))],
+            "row_starts": [(5, 7)],
             "interpolate_at_feet": [
-                (p, self.feet, none, 4, False, self.out()),
-                self.feet_kernel(False), self.feet_kernel(True),
+                self.feet_kernel(4, False), self.feet_kernel(6, True),
+                self.feet_kernel(6, False, moves=False),
+                self.feet_kernel(4, True, grows=False),
             ],
-            "interpolate_at_perturbed_feet": [
-                self.perturbed_kernel(4, False, none),
-                self.perturbed_kernel(6, True, self.growth),
-            ],
-            "blend": [(p, p[::-1].copy(), 0.3, self.out())],
             "squared_differences": [(self.normal(n + 7), ones)],
             "read_row": [
                 (*line[:3], ones, inverse, self.normal(n + 8), np.zeros(7))
@@ -227,7 +214,7 @@ class Arguments:
             "translate_positive": [(
                 p, *self.fluxes[0], *self.fluxes[1], self.out(),
             )],
-            "eliminate": [(elimination.pivots, elimination.numbers[2], row[0].copy())],
+            "solve_four": [(self.normal(n, 4), *elimination, np.zeros((n, 4)))],
             "solve_rows": [(p, *elimination, self.out())],
             "add_weighted": [
                 (p.ravel(), ones[:3] / 3, self.normal(3, p.size), begin)

@@ -24,7 +24,7 @@ class Feet:
     places : ndarray, shape (3, n1, n2, n_alpha)
         Feet in index units.
     growth : ndarray, shape (n1, n2, n_alpha) or (1, 1, 1)
-        Logarithm of the factor the unknown collects on the way; one zero for none.
+        Factor the unknown collects on the way; a single one for none.
     ds : float
         Length of the step.
     """
@@ -91,7 +91,7 @@ class Characteristics:
     def _trace_all(self, s: float, ds: float, held: Feet | None) -> Feet:
         shape = self.grid.shape
         if held is None:
-            growth = np.zeros(shape if self.reacts else (1, 1, 1))
+            growth = np.ones(shape if self.reacts else (1, 1, 1))
             feet = Feet(np.empty((3, *shape)), growth, ds)
         else:
             feet = replace(held, ds=ds)
@@ -109,7 +109,9 @@ class Characteristics:
         feet.places[1, slab] = (start2 - self.grid.xi2[0]) / d2
         feet.places[2, slab] = (turned - self.grid.alpha[0]) / d_alpha
         if self.reacts:
-            feet.growth[slab] = growth
+            # Beyond all numbers the density is too, which ends the run.
+            with np.errstate(over="ignore"):
+                feet.growth[slab] = np.exp(growth)
 
     def _runge_kutta(
         self, arrival: tuple[Array, ...], s: float, ds: float

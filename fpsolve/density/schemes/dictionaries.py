@@ -15,12 +15,16 @@ __all__ = ["CODE", "describe_scheme", "described_scheme", "scheme_from_dict"]
 
 # Key of what tells a class of a user's own from others: its name and a digest.
 CODE = "code"
+# That of the number of a scheme's arithmetic, of schemes in which it has changed.
+REVISION = "revision"
 
 
 def describe_scheme(scheme: Scheme) -> dict[str, Any]:
     """Return name, order and options of a scheme, ready for JSON.
 
-    Of a user's own class, which may have inherited a name, also which code it is.
+    Of a scheme that computes other numbers than it once did, the `revision` besides:
+    what the older one began is not its to continue. Of a user's own class, which may
+    have inherited a name, also which code it is.
     """
     kind = getattr(scheme, "described_as", type(scheme))
     about = {
@@ -28,6 +32,8 @@ def describe_scheme(scheme: Scheme) -> dict[str, Any]:
         "order": scheme.order,
         "options": dict(scheme.options),
     }
+    if hasattr(kind, REVISION):
+        about[REVISION] = kind.revision
     if kind not in SCHEMES.values():
         digest = digest_or_none(kind, sampled=False)
         about[CODE] = f"{kind.__module__}.{kind.__qualname__} {digest}"

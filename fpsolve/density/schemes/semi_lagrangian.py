@@ -62,6 +62,8 @@ class SemiLagrangian:
     """
 
     name = "semi_lagrangian"
+    # 2: moved feet to first order; 1: values interpolated there.
+    revision = 2
 
     def __init__(
         self,
