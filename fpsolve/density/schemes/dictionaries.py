@@ -33,7 +33,7 @@ def describe_scheme(scheme: Scheme) -> dict[str, Any]:
         "options": dict(scheme.options),
     }
     if hasattr(kind, REVISION):
-        about[REVISION] = kind.revision
+        about[REVISION] = getattr(kind, REVISION)
     if kind not in SCHEMES.values():
         digest = digest_or_none(kind, sampled=False)
         about[CODE] = f"{kind.__module__}.{kind.__qualname__} {digest}"
