@@ -11,8 +11,10 @@ from fpsolve.errors import ToleranceError
 from fpsolve.paths import EquilibriumLaw
 from fpsolve.spectral.resolvent.basis import Basis
 from fpsolve.spectral.resolvent.centre import centre_of, concentration
-from fpsolve.spectral.resolvent.fibre_spectrum import FAR
+from fpsolve.spectral.resolvent.fibre import fibre_of
+from fpsolve.spectral.resolvent.fibre_spectrum import FAR, FIRST_LONG
 from fpsolve.spectral.resolvent.generator import Generator
+from fpsolve.spectral.resolvent.ladder import SAFETY
 from fpsolve.spectral.resolvent.limit import angle_density, short_wave_limit
 from fpsolve.spectral.resolvent.waves import along_long_waves, along_short_waves
 
@@ -221,3 +223,19 @@ def test_too_little_noise_is_refused_with_what_was_reached(monkeypatch):
     with pytest.raises(ToleranceError, match="no truncation of 5000 states") as raised:
         fp.web_spectrum(model, 0.5, 1.0)
     assert raised.value.reached > raised.value.tolerance
+
+
+@pytest.mark.nightly
+def test_little_noise_asks_three_truncations_to_agree_on_long_waves():
+    """A = 0.5: the first two agree to 2e-4 on what is wrong by 4e-3, by chance."""
+    model = fp.LayDownModel(fp.QuadraticPotential(), 0.5, fp.MovingBelt(0.1))
+    fibre, k1, k2 = fibre_of(model), 0.18335056, 0.07989665
+    first, second, large = (
+        float(along_long_waves(fibre.generator(basis), k1, [k2])[0])
+        for basis in (FIRST_LONG, FIRST_LONG.grown(1), FIRST_LONG.grown(3))
+    )
+    # What was the error before: it does not cover.
+    assert SAFETY * abs(second - first) < 0.2 * abs(second - large)
+    for tolerance in (3e-2, 1e-2):
+        value, error = fibre.spectrum(np.array([k1]), np.array([k2]), tolerance)
+        assert abs(value[0] - large) < error[0] <= tolerance * value[0]

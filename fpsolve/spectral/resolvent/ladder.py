@@ -70,6 +70,7 @@ class Ladder:
         allowed: Allowed,
         level: int = 0,
         most: int = MOST_STATES,
+        unseen: float | None = None,
     ) -> tuple[Array, Array, int]:
         """What `compute` returns, bounds of its errors, and the level.
 
@@ -93,6 +94,8 @@ class Ladder:
             To begin at.
         most : int
             States of the largest truncation.
+        unseen : float, optional
+            In place of that of the class: infinite, three truncations must agree.
 
         Raises
         ------
@@ -102,7 +105,7 @@ class Ladder:
         """
         coarse = columns(compute(self.generator(grown(first, level))))
         reached, tolerance = np.inf, np.nan
-        before = np.full(coarse.shape[1], self.unseen)
+        before = np.full(coarse.shape[1], self.unseen if unseen is None else unseen)
         while grown(first, level + 1).size <= most:
             level += 1
             found = compute(self.generator(grown(first, level)))

@@ -43,9 +43,11 @@ class RoundLadder(Ladder):
         allowed: Allowed,
         level: int = 0,
         most: int = MOST_STATES,
+        unseen: float | None = None,
     ) -> tuple[Array, Array, int]:
         """As `Ladder.climb`, to fewer states: a steeper force fills the factors."""
-        return super().climb(first, compute, allowed, level, min(most, MOST_STATES))
+        fewest = min(most, MOST_STATES)
+        return super().climb(first, compute, allowed, level, fewest, unseen)
 
     def generator(self, basis: Basis) -> Generator:
         """The generator in as many radial functions."""
