@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -25,6 +26,7 @@ _NAME = "identification"
 _UNITS = {
     "sigma1": "m", "sigma2": "m", "noise": "m^-1/2", "curvature_noise": "m^-3/2",
 }  # fmt: skip
+_BOTH = "both"
 _EXAMPLE = "that of the packaged fibre"
 
 
@@ -60,8 +62,8 @@ PositionError = Annotated[
     _length("Standard deviation of the coordinates of a point.", show_default="0"),
 ]
 Model = Annotated[
-    str, typer.Option(help="smooth or basic.", metavar="WORD",
-                      autocompletion=of(*MODELS))
+    str, typer.Option(help="smooth, basic or both.", metavar="WORD",
+                      autocompletion=of(*MODELS, _BOTH))
 ]  # fmt: skip
 Method = Annotated[
     str, typer.Option(help="likelihood or functional.", metavar="WORD",
@@ -113,21 +115,48 @@ def identify(
     with command(out, figures=not no_figures) as frame:
         from fpsolve.studies.identification.identify import identify as identified
 
-        frame.claim(f"{_NAME}.nc", f"{_NAME}.html", *_pictures())
+        models = MODELS if model == _BOTH else (model,)
+        names = [_file_of(name, models) for name in models]
+        frame.claim(*names, f"{_NAME}.html", *_pictures())
         given = Measured(
             curve, belt_speed, ds, unit, position_error, nozzle, angular_speed, radius,
             phase,
         )  # fmt: skip
         fibre = measured_fibre(given)
-        found = identified(fibre, model=model, method=method, seed=seed)
-        print_identification(found)
         used = command_line(
             "identify", *([] if curve is None else [str(curve)]),
             belt_speed=belt_speed, ds=ds, unit=unit, position_error=position_error,
             model=model, method=method, nozzle=nozzle, angular_speed=angular_speed,
             radius=radius, phase=phase, seed=seed,
         )  # fmt: skip
-        _write(frame, replace(found, provenance={**found.provenance, **used}))
+        found = {}
+        for one, name in zip(models, names, strict=True):
+            result = identified(fibre, model=one, method=method, seed=seed)
+            if len(models) > 1:
+                print_lines(f"The {one} model")
+            print_identification(result)
+            found[name] = replace(result, provenance={**result.provenance, **used})
+        if len(models) > 1:
+            print_comparison(dict(zip(models, found.values(), strict=True)))
+        _write(frame, found)
+
+
+def _file_of(model: str, models: tuple[str, ...]) -> str:
+    """The first one has the name that other commands take."""
+    return f"{_NAME}.nc" if model == models[0] else f"{_NAME}-{model}.nc"
+
+
+def print_comparison(found: Mapping[str, Identification]) -> None:
+    """Print AIC and p-values of models of one fibre side by side."""
+    rows = []
+    for name, one in found.items():
+        worst = min(one.p_values, key=one.p_values.__getitem__)
+        aic = "-" if one.aic is None else f"{one.aic:.2f}"
+        rows.append((name, aic, f"{one.p_values[worst]:.3f}", worst))
+    print_table(("model", "AIC", "smallest p-value", "of the"), rows)
+    if all(one.aic is not None for one in found.values()):
+        best = min(found, key=lambda name: found[name].aic or 0.0)
+        print_lines(f"AIC prefers the {best} model.")
 
 
 def print_identification(found: Identification) -> None:
@@ -164,13 +193,15 @@ def _pictures() -> tuple[str, str]:
     return f"{_NAME}-fibres.png", f"{_NAME}-increments.png"
 
 
-def _write(frame: Frame, found: Identification) -> None:
+def _write(frame: Frame, found: Mapping[str, Identification]) -> None:
+    """Every one by its name; figures and a page of all."""
     from fpsolve.pages.page import report_text
     from fpsolve.plotting.identification import plot_identified_fibres, plot_increments
 
-    frame.finish(found, f"{_NAME}.nc")
+    for name, one in found.items():
+        frame.finish(one, name)
     for draw, name in zip(
         (plot_identified_fibres, plot_increments), _pictures(), strict=True
     ):
-        frame.figure(draw, found, name=name)
-    frame.text(report_text([found]), f"{_NAME}.html")
+        frame.figure(draw, *found.values(), name=name)
+    frame.text(report_text(list(found.values())), f"{_NAME}.html")

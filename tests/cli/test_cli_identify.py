@@ -1,5 +1,6 @@
 """`fpsolve identify` says what `identify` says; its model goes on to webs."""
 
+from dataclasses import replace
 from importlib import import_module as module
 
 import numpy as np
@@ -56,6 +57,48 @@ def test_the_packaged_fibre_is_identified_in_metres(fpsolve, tmp_path):
     )
     page = (tmp_path / "out" / "identification.html").read_text("utf-8")
     assert "Identified parameters" in page
+
+
+def test_both_models_are_compared_in_one_call(fpsolve, table, tmp_path, monkeypatch):
+    smooth = fp.SmoothLayDownModel(MODEL.potential, 2e-3, 30.0, MODEL.curve)
+    known = {
+        "basic": known_identification(MODEL),
+        "smooth": known_identification(smooth),
+    }
+    known["basic"] = replace(known["basic"], log_likelihood=10.0)
+    known["smooth"] = replace(known["smooth"], log_likelihood=12.0)
+
+    def identify(fibre, *, model, method, seed):
+        return known[model]
+
+    place = module("fpsolve.studies.identification.identify")
+    monkeypatch.setattr(place, "identify", identify)
+    pages = []
+    monkeypatch.setattr(
+        module("fpsolve.pages.page"),
+        "report_text",
+        lambda found: str(pages.append(found)),
+    )
+    result = fpsolve(
+        "identify", table, "--belt-speed", 0.1, "--unit", "mm", "--ds", 5e-4,
+        "--model", "both", "--out", "out",
+    )  # fmt: skip
+    assert result.exit_code == 0, result.output
+    assert files(tmp_path / "out") == [
+        "identification-basic.nc", "identification-fibres.png",
+        "identification-increments.png", "identification.html", "identification.nc",
+    ]  # fmt: skip
+    # 2·3 - 2·12 against 2·3 - 2·10: these results have three parameters each.
+    assert "AIC prefers the smooth model." in result.stdout
+    assert "-18.00" in result.stdout
+    assert "-14.00" in result.stdout
+    for name, file in (("smooth", ""), ("basic", "-basic")):
+        found = fp.load(tmp_path / "out" / f"identification{file}.nc")
+        assert found.parameters == known[name].parameters
+        assert "--model both" in found.provenance["command"]
+    assert [one.parameters for one in pages[0]] == [
+        known[name].parameters for name in ("smooth", "basic")
+    ]
 
 
 def test_the_packaged_fibre_is_what_its_command_writes():

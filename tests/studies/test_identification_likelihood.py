@@ -1,15 +1,13 @@
-"""Parameters by the likelihood of chord angles: its law, estimates, their errors."""
+"""Parameters by the likelihood of chord angles: estimates and their errors."""
 
 import math
 
 import numpy as np
 import pytest
-from scipy.integrate import quad
-from scipy.stats import multivariate_normal
 
 import fpsolve as fp
 from fpsolve.studies.identification.bootstrap import bootstrapped
-from fpsolve.studies.identification.chord_law import Parameters, chord_law
+from fpsolve.studies.identification.chord_law import Parameters
 from fpsolve.studies.identification.chords import chords_of
 from fpsolve.studies.identification.coordinates import interval
 from fpsolve.studies.identification.determined import loose_strengths
@@ -64,71 +62,6 @@ def scores(estimate):
     return found
 
 
-def variogram_of_means(variogram, lag, ds):
-    """E(ᾱ_{j+lag} - ᾱ_j)² of means over ds from V(h) = E(α_{s+h} - α_s)²."""
-
-    def averaged(shift):
-        # Differences of two uniform numbers in a step have a triangular density.
-        value, _ = quad(
-            lambda u: (1 - abs(u)) * variogram(abs(u + shift) * ds), -1, 1, points=[0]
-        )
-        return value
-
-    return averaged(lag) - averaged(0)
-
-
-@pytest.mark.parametrize("relaxation_length", [0.0, 0.05, 0.4, 3.0])
-def test_angles_without_force_have_the_gaussian_law_of_means_of_the_angle(
-    relaxation_length,
-):
-    # An independent way: the dense covariance of increments, by quadrature of the
-    # variogram of α, exact for both models.
-    A, R, ds, n = 1.3, relaxation_length, 0.2, 9
-
-    def variogram(h):
-        return A**2 * (h + (R * math.expm1(-h / R) if R else 0.0))
-
-    V = [variogram_of_means(variogram, lag, ds) for lag in range(n)]
-    law = chord_law(Parameters((0.0, 0.0), A, R), ds)
-    # As white noise of the angle, which adds twice its variance to every increment.
-    V = np.array([v + 2 * law.chord_variance * (lag > 0) for lag, v in enumerate(V)])
-    lags = np.abs(np.subtract.outer(np.arange(n - 1), np.arange(n - 1)))
-    covariance = 0.5 * (V[lags + 1] + V[np.abs(lags - 1)] - 2 * V[lags])
-    angles = np.concatenate([[0.4], 0.4 + np.cumsum(0.3 * np.sin(np.arange(1, n)))])
-    chord = ds * np.stack([np.cos(angles), np.sin(angles)], axis=1)
-    eta = np.concatenate([[[0.0, 0.0]], np.cumsum(chord, axis=0)])
-    likelihood = Likelihood([chords_of(eta, np.zeros_like(eta), ds)], ds)
-    found = likelihood.densities(Parameters((0.0, 0.0), A, R))[1].sum()
-    exact = multivariate_normal(np.zeros(n - 1), covariance).logpdf(np.diff(angles))
-    # Nothing is known of the first angle to a variance of 1e5, which rounds to 1e-7.
-    assert found == pytest.approx(exact, abs=1e-4)
-
-
-def test_increments_of_mean_angles_of_the_basic_model_are_a_moving_average():
-    V = [variogram_of_means(lambda h: h, lag, 1.0) for lag in range(4)]
-    assert V[1] == pytest.approx(2 / 3, rel=1e-8)
-    # Covariance of neighbours (V₂ - 2V₁)/2 = 1/6, a quarter of the variance; then none.
-    assert 0.5 * (V[2] - 2 * V[1]) == pytest.approx(1 / 6, rel=1e-8)
-    assert 0.5 * (V[3] - 2 * V[2] + V[1]) == pytest.approx(0.0, abs=1e-8)
-
-
-def test_the_angle_of_a_chord_differs_from_the_mean_angle_as_the_law_says():
-    # Both of the same Brownian paths, so that only the difference has an error.
-    A2h, m, n = 0.4, 24, 40_000
-    steps = np.random.default_rng(5).standard_normal((n, 2 * m)) * math.sqrt(A2h / m)
-    alpha = np.cumsum(steps, axis=1) - 0.5 * steps
-    halves = alpha.reshape(n, 2, m)
-    chord = np.angle(np.exp(1j * (halves - halves[:, :1, :1])).mean(axis=2))
-    mean = (halves - halves[:, :1, :1]).mean(axis=2)
-    excess = np.diff(chord).ravel() ** 2 - np.diff(mean).ravel() ** 2
-    law = chord_law(Parameters((0.0, 0.0), math.sqrt(A2h)), 1.0)
-    assert law.chord_variance == pytest.approx(A2h**2 / 360)
-    error = excess.std() / math.sqrt(n)
-    # Next order in A²h: a tenth of the term.
-    assert excess.mean() == pytest.approx(2 * law.chord_variance, abs=3 * error + 2e-4)
-    assert excess.mean() > 3 * error
-
-
 def test_the_force_changes_with_the_chord_as_its_slope_says(smooth_curves):
     curve = smooth_curves[0]
     eta, xi = curve.pieces[0][:6], curve.deviations[0][:6]
@@ -150,19 +83,6 @@ def test_the_force_changes_with_the_chord_as_its_slope_says(smooth_curves):
         # Differences of order 2 over 1e-5.
         difference = (after - before) / (2 * turn)
         assert getattr(exact, slope)[4] == pytest.approx(difference, rel=1e-6, abs=1e-8)
-
-
-def test_forces_along_a_circle_are_its_line_integrals():
-    # ξ = r(cos, sin): ∫ ξ1 dη2 = ∫ r² cos², and the trapezoidal rule errs by O(Δs²).
-    errors = []
-    for n in (40, 80, 160, 320):
-        t = np.linspace(0.0, 1.0, n + 1)
-        eta = 2.0 * np.stack([np.cos(t), np.sin(t)], axis=1)
-        chords = chords_of(eta, np.zeros_like(eta), 2.0 / n)
-        exact = 4.0 * (0.5 + math.sin(2.0) / 4)
-        errors.append(abs(2.0 / n * chords.forces[:, 0].sum() - exact))
-    orders = np.log2(np.divide(errors[:-1], errors[1:]))
-    assert orders == pytest.approx([2.0, 2.0, 2.0], abs=0.02)
 
 
 def test_the_basic_law_is_the_limit_of_the_smooth_one(basic_curves):

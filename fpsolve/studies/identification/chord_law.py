@@ -1,28 +1,44 @@
-"""The Gaussian law of a chord: exact over a step, for a smooth fibre or a basic one.
+"""The Gaussian law of a chord: over a step, for a smooth fibre or a basic one.
 
 A smooth fibre between two nodes is the linear equation dα = κ ds,
-dκ = (f - κ)/R ds + K dW with a force that changes linearly; (κ, α, ∫α) is Gaussian
-with the covariance K² ∫ g gᵀ du. R → 0 at fixed A = RK is the basic model, whose mean
-angles over successive steps h have increments of variance (2/3)A²h and correlation 1/4.
+dκ = (f - κ)/R ds + K dW; R → 0 at fixed A = RK is the basic model. With t = s/h from 0
+to 1 along a chord of length h, the force is
+
+    f = F + D (t - ½) + (c/h)(α - ᾱ),
+
+F its mean, which is known but for β∫(t - ½) α dt, the area between fibre and chord.
+Without c and β, (κ, α, ᾱ) has factors and a covariance in closed form. With them the
+path is the one without and integrals of its own α - ᾱ: to order c² and β.
 
 The angle of a chord is not the mean of α along it but arg ∫ e^{iα} du
-= ᾱ - ⟨(α - ᾱ)³⟩/6 + …; to first order in V = E⟨(α - ᾱ)²⟩ this changes the covariance
-of the angles as a white noise of variance V²/10 would.
+= ᾱ - ⟨(α - ᾱ)³⟩/6 + …; nodes along the chord tell the filter what α - ᾱ is, given κ
+and F at its start. For R = 0 and F = 0 the variance of that angle is
+q/3 + q²/360 + 19 q³/45360 + 31 q⁴/362880 + …, q = A²h.
 """
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
+import numpy as np
+
 from fpsolve._kernels.chord_filter import ChordLaw
+from fpsolve._support.arrays import Array
 from fpsolve.paths.smooth_step import phi, smooth_step
+from fpsolve.studies.identification.chord_paths import (
+    NODES,
+    WEIGHTS,
+    along_chord,
+    grown,
+    kicks_along_chord,
+    pulls_along_chord,
+)
 
 __all__ = ["Parameters", "chord_law"]
 
-Three = tuple[float, float, float]
-Six = tuple[float, float, float, float, float, float]
-# Factors of κ, weights of the force, covariance, and the variance of α about its mean.
-Step = tuple[Three, Six, Six, float]
+# Coefficients of q³ and q⁴, which the third order in α - ᾱ does not give.
+_CHORD_SERIES = (19 / 45360, 31 / 362880)
 
 
 @dataclass(frozen=True)
@@ -46,44 +62,59 @@ class Parameters:
 
 def chord_law(at: Parameters, ds: float, position_error: float = 0.0) -> ChordLaw:
     """Weights and noise of a chord of length `ds`."""
-    if at.relaxation_length:
-        kappa, weights, noise, spread = _smooth(at, ds)
-        # E κ² = K²R/2 + E cos²α/σ1² + E sin²α/σ2² - v²/σ1² of a stationary fibre.
-        bent = 0.5 * at.noise**2 / at.relaxation_length + max(0.0, *at.strength)
-    else:
-        kappa, weights, noise, spread = _basic(at.noise, ds)
-        bent = 0.0
+    length = at.relaxation_length
+    x = ds / length if length else math.inf
+    # E κ² = K²R/2 + E cos²α/σ1² + E sin²α/σ2² - v²/σ1² of a stationary fibre.
+    bent = 0.5 * at.noise**2 / length + max(0.0, *at.strength) if length else 0.0
+    free, covariance = _free_factors(x, ds), _covariance(at, ds)
+    paths, pulls = along_chord(x, ds), pulls_along_chord(x, ds)
+    among, kicks = kicks_along_chord(x, ds)
+    among, kicks = at.noise**2 * among, at.noise**2 * kicks
+    wander = np.diagonal(among) - 2 * kicks[2] + covariance[2, 2]
+    q = 6 * float(WEIGHTS @ wander)
+    bowed = np.outer(free[:, 1], WEIGHTS * (NODES - 0.5))
+    first, second, third = pulls[0] @ kicks.T, pulls[1] @ kicks.T, bowed @ kicks.T
+    squares = pulls[0] @ among @ pulls[0].T
+    factors = np.stack(
+        [free, pulls[0] @ paths.T, pulls[1] @ paths.T, bowed @ paths.T], axis=-1
+    )
+    noise = np.stack(
+        [covariance, first + first.T, second + second.T + squares, third + third.T],
+        axis=-1,
+    )
+    centred = paths[:2] - (paths[:2] @ WEIGHTS)[:, None]
     return ChordLaw(
-        kappa=kappa,
-        weights=weights,
-        noise=noise,
-        chord_variance=0.1 * spread**2,
+        factors=np.concatenate(
+            [factors[:, 0], factors[:, 1:].reshape(6, 4), noise[np.tril_indices(3)]]
+        ),
+        path=np.concatenate([[WEIGHTS], centred, [wander], kicks, pulls[0]]),
+        chord_variance=_CHORD_SERIES[0] * q**3 + _CHORD_SERIES[1] * q**4,
         position_variance=position_error**2,
         curvature_variance=bent,
         strength=at.strength,
+        ds=ds,
     )
 
 
-def _basic(noise: float, h: float) -> Step:
-    """α and its mean over the step; the curvature that is known is the force."""
-    variance = noise**2 * h
-    covariance = (0.0, 0.0, variance, 0.0, variance / 2, variance / 3)
-    return (0.0, 0.0, 0.0), (1.0, 0.5, h, 0.0, h / 2, -h / 12), covariance, variance / 6
+def _free_factors(x: float, h: float) -> Array:
+    """What (κ, α - α₀, ᾱ - α₀) after a chord are for κ = 1, F = 1 and D = 1."""
+    p1, p2 = (0.0 if math.isinf(x) else float(phi(k, x)) for k in (1, 2))
+    g1, g2, g3, g4 = (float(grown(k, x, 1.0)) for k in range(1, 5))
+    return np.array(
+        [
+            [1 - g1, g1, g2 - g1 / 2],
+            [h * p1, h * g2, h * (g3 - g2 / 2)],
+            [h * p2, h * g3, h * (g4 - g3 / 2)],
+        ]
+    )
 
 
-def _smooth(at: Parameters, h: float) -> Step:
-    """κ, α and the mean of α over the step."""
-    x = h / at.relaxation_length
-    p0, p1, p2, p3, p4 = (float(phi(k, x)) for k in range(5))
-    step = smooth_step(at.relaxation_length, at.noise, h)
-    n11, n21, n22, n31, n32, n33 = step.noise
-    covariance = (
-        n11**2, n21 * n11, n21**2 + n22**2,
-        n31 * n11, n31 * n21 + n32 * n22, n31**2 + n32**2 + n33**2,
-    )  # fmt: skip
-    weights = (
-        x * p1, x * (p2 - p1 / 2),
-        h * x * p2, h * x * (p3 - p2 / 2),
-        h * x * p3, h * x * (p4 - p3 / 2),
-    )  # fmt: skip
-    return (p0, h * p1, h * p2), weights, covariance, 2 * step.spread[0]
+def _covariance(at: Parameters, h: float) -> Array:
+    """Covariance of the noise of (κ, α, ᾱ)."""
+    if not at.relaxation_length:
+        # κ of the basic model is the force.
+        unit = np.array([[0.0, 0.0, 0.0], [0.0, 1.0, 1 / 2], [0.0, 1 / 2, 1 / 3]])
+        return np.asarray(at.noise**2 * h * unit)
+    n11, n21, n22, n31, n32, n33 = smooth_step(at.relaxation_length, at.noise, h).noise
+    root = np.array([[n11, 0.0, 0.0], [n21, n22, 0.0], [n31, n32, n33]])
+    return np.asarray(root @ root.T)

@@ -33,14 +33,25 @@ def chords_of(eta: Array, gamma: Array, ds: float) -> Chords:
     middle = 0.5 * (xi[1:] + xi[:-1])
     # sin α, -cos α times the length, and the derivatives of cos α, sin α by α; a chord
     # that turns moves its own end, and half of that the middle.
+    bow = np.diff(gamma, 2, axis=0)
+    bow = np.concatenate([bow[:1], bow]) + np.concatenate([bow, bow[-1:]])
+    deviation = np.diff(xi, axis=0)
     crossed, across = chord[:, ::-1] * (1.0, -1.0), chord[:, ::-1] * (-1.0, 1.0)
     return Chords(
         angles=angles,
         lengths=np.hypot(chord[:, 0], chord[:, 1]),
-        forces=middle * crossed / ds,
+        forces=(middle + bow / 24) * crossed / ds,
         bending=middle * chord,
         drift=(chord - moved) * crossed / ds,
         slopes=(middle * chord + 0.5 * across * crossed) / ds,
         bending_slopes=middle * across + 0.5 * across * chord,
         drift_slopes=((chord - moved) * chord + across * crossed) / ds,
+        areas=np.stack(
+            [
+                chord[:, 0] * deviation[:, 0] + chord[:, 1] ** 2,
+                chord[:, 0] ** 2 + chord[:, 1] * deviation[:, 1],
+            ],
+            axis=1,
+        )
+        / ds,
     )

@@ -22,10 +22,10 @@ __all__ = [
 _DEVIATIONS = 2.0
 # Relative standard error beyond which a parameter is known to a factor only.
 _LOOSE = 0.5
-# A and K err relatively by less than this times (κ_rms Δs)², since chords are no mean
-# angles; said where that is more than so many standard errors. Measured at A = 10:
+# A and K err relatively by less than this times (κ_rms Δs)², for what the law of chords
+# leaves out; said where that is more than so many standard errors. Measured at A = 10:
 # docs/identification_likelihood.md.
-_CHORD_BIAS, _SHARE_OF_ERROR = 0.03, 0.5
+_CHORD_BIAS, _SHARE_OF_ERROR = 0.007, 0.5
 
 
 def check_confined(strength: Array, errors: Array, length: float) -> None:

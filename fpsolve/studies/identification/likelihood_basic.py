@@ -25,10 +25,9 @@ def estimate_basic(curve: FibreCurve) -> Estimate:
     likelihood a Kalman filter gives exactly. The force is read off the fibre, and that
     it contains the noise of its own chord is accounted for by the Jacobian.
 
-    The covariance is the inverse curvature of the likelihood in (1/σ1², 1/σ2², ln A),
-    and does not contain the bias of points that are far apart, O(Δs²): of A 0.3 % at
-    Δs = 0.2 σ and A = 1/√σ. Where turns from chord to chord cost more than half a
-    standard error of A or K, `notes` say so.
+    The covariance is the inverse curvature of the likelihood in (1/σ1², 1/σ2², ln A).
+    Where turns from chord to chord may cost more than half a standard error of A or K,
+    it holds that too, and `notes` say so.
 
     Parameters
     ----------
