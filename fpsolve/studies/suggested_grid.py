@@ -133,11 +133,7 @@ def suggest_grid(
     """
     check_fibre_model(model)
     check_tolerance(tolerance)
-    if not model.potential.normalisable:
-        raise ValueError(
-            f"`potential` must confine, got {model.potential!r}; without a "
-            "normalisable exp(-B) no box is large enough, choose one by hand."
-        )
+    check_normalisable(model)
     lost = min(BOX_SHARE * tolerance, LARGEST_LOSS)
     nodes = gibbs_nodes(model.potential)
     smooth = isinstance(model, SmoothLayDownModel)
@@ -174,6 +170,15 @@ def suggest_grid(
     if isinstance(model, SmoothLayDownModel):
         return SuggestedSmoothGrid.of(grid, model, curvature)
     return grid
+
+
+def check_normalisable(model: FibreModel) -> None:
+    """Raise unless e^{−B} has a mass that a box can hold."""
+    if not model.potential.normalisable:
+        raise ValueError(
+            f"`potential` must confine, got {model.potential!r}; without a "
+            "normalisable exp(-B) no box is large enough, choose one by hand."
+        )
 
 
 def box_of(

@@ -32,8 +32,9 @@ def describe_scheme(scheme: Scheme) -> dict[str, Any]:
         "order": scheme.order,
         "options": dict(scheme.options),
     }
-    if hasattr(kind, REVISION):
-        about[REVISION] = getattr(kind, REVISION)
+    revision = getattr(kind, REVISION, None)
+    if revision is not None:
+        about[REVISION] = revision
     if kind not in SCHEMES.values():
         digest = digest_or_none(kind, sampled=False)
         about[CODE] = f"{kind.__module__}.{kind.__qualname__} {digest}"

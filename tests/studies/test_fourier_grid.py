@@ -1,0 +1,81 @@
+"""Grids for Fourier translations keep the tolerance they were chosen for."""
+
+import math
+
+import numpy as np
+import pytest
+from problems import DecayingCirculation
+
+import fpsolve as fp
+from fpsolve.grids.diagnostics import l1_distance
+from fpsolve.studies import fourier_grid
+
+MODEL = fp.LayDownModel(fp.QuadraticPotential(), 1.0)
+
+
+def swirl(grid):
+    """A solution in closed form."""
+    return DecayingCirculation(MODEL.potential, MODEL.noise, grid, share=0.5)
+
+
+def narrow(grid, variance=0.5):
+    return fp.initial.gaussian(grid, (0.5, 0.0), variance, 0.3, 1.0)
+
+
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-6])
+def test_a_run_on_the_grid_is_as_near_the_exact_density_as_asked(tolerance):
+    grid = fp.suggest_fourier_grid(
+        MODEL, lambda one: swirl(one).initial(), 0.5, tolerance
+    )
+    problem, scheme = swirl(grid), fp.drift_kick(MODEL, grid, translation="fourier")
+    p = fp.solve(scheme, problem.initial(), (0.0, 0.5), tolerance=tolerance).final
+    error = l1_distance(p, problem.density(0.5), grid)
+    # The coarsest cells are good for more than the first; 1.0e-4 and 1.6e-8 measured.
+    assert error < tolerance
+    assert math.prod(grid.shape) < 60_000
+
+
+def test_the_interpolant_of_waves_that_cells_resolve_is_exact_anywhere():
+    few, many = fp.PhaseSpaceGrid(2.0, (8, 10, 12)), fp.PhaseSpaceGrid(1.5, (14, 6, 10))
+
+    def waves(grid):
+        xi1, xi2, alpha = grid.mesh()
+        turn = np.pi / 2
+        return np.cos(3 * turn * xi1 + 0.2) * np.sin(4 * turn * xi2) + np.cos(5 * alpha)
+
+    # Rounding of sums over 30 cells.
+    np.testing.assert_allclose(
+        fourier_grid._read(waves(few), few, many), waves(many), rtol=0, atol=1e-13
+    )
+
+
+def test_a_narrower_start_gets_smaller_cells_and_a_farther_one_a_wider_box():
+    def chosen(mean, variance):
+        def start(grid):
+            return fp.initial.gaussian(grid, (mean, 0.0), variance, 0.3, 1.0)
+
+        return fp.suggest_fourier_grid(MODEL, start, 0.25, 1e-2)
+
+    plain, sharp, far = chosen(0.5, 0.5), chosen(0.5, 0.2), chosen(3.0, 0.5)
+    assert max(sharp.spacing[:2]) < 0.8 * min(plain.spacing[:2])
+    assert far.half_widths[0] > 1.1 * plain.half_widths[0]
+    assert "the shortest waves hold" in plain.reason
+    assert "finer by 1.5" in plain.reason
+
+
+def test_what_needs_too_many_cells_is_refused(monkeypatch):
+    monkeypatch.setattr(fourier_grid, "MOST_CELLS", 200_000)
+    with pytest.raises(ValueError, match=r"`initial` must be smooth for Fourier"):
+        fp.suggest_fourier_grid(MODEL, lambda one: narrow(one, 0.05), 0.25, 1e-6)
+
+
+@pytest.mark.parametrize("s_end", [0.0, -1.0, np.nan, np.inf])
+def test_a_length_of_the_run_that_is_none_is_refused(s_end):
+    with pytest.raises(ValueError, match="`s_end` must be"):
+        fp.suggest_fourier_grid(MODEL, narrow, s_end)
+
+
+def test_a_potential_that_does_not_confine_has_no_box():
+    free = fp.LayDownModel(fp.FreePotential(), 1.0)
+    with pytest.raises(ValueError, match="`potential` must confine"):
+        fp.suggest_fourier_grid(free, narrow, 1.0)
