@@ -64,13 +64,14 @@ def plot_fibres_in_flow(
     with drawing(COLUMN, 4.0) as figure:
         axes = figure.subplots()
         mesh = axes.pcolormesh(
-            x, z, speed.reshape(PLACES, PLACES), rasterized=True, shading="gouraud"
-        )
+            100 * x, 100 * z, speed.reshape(PLACES, PLACES), rasterized=True,
+            shading="gouraud",
+        )  # fmt: skip
         for curve in curves:
-            axes.plot(curve[:, 0], curve[:, 2], color="white", linewidth=0.5)
+            axes.plot(*100 * curve[:, [0, 2]].T, color="white", linewidth=0.5)
         figure.colorbar(mesh, label=r"$|u|$ in m/s")
         axes.set_aspect("equal")
-        axes.set(xlabel="$x$ in m", ylabel="$z$ in m")
+        axes.set(xlabel="$x$ in cm", ylabel="$z$ in cm")
         show_frame(axes)
     return figure
 

@@ -20,7 +20,8 @@ def test_fibres_are_white_before_the_speed_of_the_air():
     figure = fp.plotting.plot_fibres_in_flow(CURVES, AirFlow(rising), t=3.0)
     axes = figure.axes[0]
     assert [line.get_color() for line in axes.lines] == ["white", "white"]
-    np.testing.assert_array_equal(axes.lines[0].get_xydata(), CURVES[0][:, [0, 2]])
+    seen = 100 * CURVES[0][:, [0, 2]]
+    np.testing.assert_array_equal(axes.lines[0].get_xydata(), seen)
     speed = np.asarray(axes.collections[0].get_array())
     # From a twentieth of the height below the fibres to one above them.
     assert speed.min() == pytest.approx(5 - 0.05)
