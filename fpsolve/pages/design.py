@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 __all__ = ["section"]
 
-_UNITS = ("m⁻¹ᐟ²", "m", "m", "", "m", "g/m")
+_UNITS = ("m⁻¹ᐟ²", "m", "m", "", "m", "g/m", "m")
 _NOTE = (
     "A multiplier is what the logarithm of the objective gains per logarithm that the "
     "bound gives way. An error of inf: CV does not tell this parameter."
@@ -59,6 +59,8 @@ def _parameters(design: WebDesign) -> Table:
     )  # fmt: skip
     rows = []
     for name, unit, value, error, low, high, *multipliers in zip(*columns, strict=True):
+        if name == "relaxation_length" and not value:
+            continue
         is_free = name in design.free
         rows.append((
             name, f"{value:.5g} {unit}".rstrip(),

@@ -23,7 +23,10 @@ _DIGITS, _ALL, _SHORT, _RATIO = (1, 2, 5), tuple(range(1, 10)), 8.0, 300.0
 # Of an axis that shows one number, and less than the whole of a bar.
 _ROOM, _BAR = 1.1, 0.8
 # What sensitivities are called: the titer has none.
-_SYMBOLS = ("$A$", r"$\sigma_1$", r"$\sigma_2$", "$v$", "$d$")
+_SYMBOLS = {
+    "noise": "$A$", "sigma1": r"$\sigma_1$", "sigma2": r"$\sigma_2$",
+    "speed_ratio": "$v$", "spacing": "$d$", "relaxation_length": "$R$",
+}  # fmt: skip
 
 
 def plot_web_design(design: WebDesign) -> Figure:
@@ -82,8 +85,11 @@ def _with_room(axes: Axes, shown: list[float]) -> None:
 
 def _sensitivities(axes: Axes, design: WebDesign) -> None:
     width = _BAR / design.zones.size
-    order = [design.parameters.index(name) for name in
-             ("noise", "sigma1", "sigma2", "speed_ratio", "spacing")]  # fmt: skip
+    symbols = {
+        name: symbol for name, symbol in _SYMBOLS.items()
+        if name != "relaxation_length" or design.process.relaxation_length
+    }  # fmt: skip
+    order = [design.parameters.index(name) for name in symbols]
     places = np.arange(float(len(order)))
     for n, zone in enumerate(design.zones):
         axes.bar(
@@ -93,6 +99,6 @@ def _sensitivities(axes: Axes, design: WebDesign) -> None:
             label=f"{1e3 * zone:g} mm",
         )  # fmt: skip
     axes.axhline(0.0, color="0.5", linewidth=0.6)
-    axes.set_xticks(places, _SYMBOLS)
+    axes.set_xticks(places, list(symbols.values()))
     axes.set_ylabel(r"$\partial\,\log$ CV$/\partial\,\log\theta$")
     axes.legend(loc="best")

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from known_webs import KnownWeb
 from scipy.special import stdtrit
+from web_numbers import choose_few_nodes, choose_one_truncation
 
 import fpsolve as fp
 from fpsolve import studies
@@ -79,6 +80,31 @@ def test_a_belt_that_runs_backwards_is_designed_as_well(known):
     assert back.values == pytest.approx(forwards.values, rel=1e-12)
     assert back.process.speed_ratio < 0
     assert back.sensitivities == pytest.approx(forwards.sensitivities, abs=1e-12)
+
+
+def test_the_relaxation_length_of_smooth_fibres_ends_where_its_law_says(known):
+    """At R₀ within the bounds, with the slope 2 e log (R/R₀) at one that holds it."""
+    smooth, place = replace(PROCESS, relaxation_length=1e-3), -1
+    free = ("noise", "relaxation_length")
+    ends = {**WIDE, "relaxation_length": (1e-4, 2e-3)}
+    design = known(ZONES, process=smooth, free=free, bounds={
+        name: ends[name] for name in free
+    })  # fmt: skip
+    # To the precision of the objective, as above.
+    assert design.values[place] == pytest.approx(5e-4, rel=3e-3)
+    assert design.process.relaxation_length == design.values[place]
+    assert design.history[0, place] == pytest.approx(1e-3, rel=1e-14)
+    held = known(ZONES, process=smooth, free=free, bounds={
+        "noise": WIDE["noise"], "relaxation_length": (8e-4, 2e-3)
+    })  # fmt: skip
+    assert held.active == ("relaxation_length at its lower bound",)
+    slope = 2 * LAW.e * np.log(8e-4 / 5e-4)
+    assert held.lower_multipliers[place] == pytest.approx(slope, rel=1e-9)
+    assert held.sensitivities[place] == pytest.approx([slope] * 2, rel=1e-9)
+    # A basic fibre has none, and nothing depends on it.
+    basic = known(ZONES)
+    assert basic.values[place] == 0
+    assert not basic.sensitivities[place].any()
 
 
 def test_the_multiplier_of_a_bound_is_the_slope_that_it_holds_back(known):
@@ -256,3 +282,34 @@ def test_shifted_positions_reach_over_the_window():
     assert np.diff(places) == pytest.approx(SPACING)
     assert places[0] <= -6 * PROCESS.sigma2 + SPACING
     assert places[-1] >= 0.1 + 6 * PROCESS.sigma2
+
+
+@pytest.mark.nightly
+def test_the_relaxation_length_of_a_predicted_web_ends_at_its_bound(monkeypatch):
+    """Slopes of smooth fibres have the sign that two predictions have, in SI units.
+
+    Of one truncation between few nodes, which are the same ones at every point.
+    """
+    choose_few_nodes(monkeypatch)
+    choose_one_truncation(monkeypatch)
+    process, zone = fp.Process(4e-3, 4e-3, 45.0, 0.2, 20.0, 8e-4), 0.016
+    ends = 4e-4, 1.2e-3
+    design = studies.design_web(
+        process, zone, spacing=1e-3, titer=TITER, free=["relaxation_length"],
+        bounds={"relaxation_length": ends}, tolerance=0.5, n_webs=0,
+    )  # fmt: skip
+    low, high = (
+        fp.predict_web(
+            replace(process, relaxation_length=end), spacing=1e-3, zones=zone,
+            tolerance=0.5,
+        ).cv[0]
+        for end in ends
+    )  # fmt: skip
+    best = int(high < low)
+    assert design.process.relaxation_length == pytest.approx(ends[best], rel=1e-9)
+    assert design.cv[0] == pytest.approx((low, high)[best], rel=1e-9)
+    assert design.history_cv[0, 0] > design.cv[0]
+    # The mean slope between both ends is between those at the ends.
+    mean = np.log(high / low) / np.log(ends[1] / ends[0])
+    slopes = design.sensitivities[-1, 0]
+    assert np.sign(slopes) == np.sign(mean)

@@ -17,7 +17,16 @@ __all__ = ["BoundsSection", "DesignConfig", "DesignSection"]
 _Numbers = tuple[float, ...]
 _Pair = tuple[float, float] | None
 _Names = tuple[
-    Literal["noise", "sigma1", "sigma2", "speed_ratio", "spacing", "titer"], ...
+    Literal[
+        "noise",
+        "sigma1",
+        "sigma2",
+        "speed_ratio",
+        "spacing",
+        "titer",
+        "relaxation_length",
+    ],
+    ...,
 ]
 
 
@@ -66,6 +75,7 @@ class BoundsSection(Section):
     speed_ratio: _Pair = None
     spacing: _Pair = None
     titer: _Pair = None
+    relaxation_length: _Pair = None
 
 
 class DesignConfig(Description):

@@ -51,8 +51,8 @@ def design_web(
     Parameters
     ----------
     process : Process
-        Where the search begins, or the nearest point within the bounds; of the basic
-        model, without a `relaxation_length`.
+        Where the search begins, or the nearest point within the bounds. With a
+        `relaxation_length` fibres are smooth, and predictions take long.
     target : float, sequence of float, or mapping of float to float
         Sides of square zones in metres, whose mean of log CV is minimised; or with the
         largest CV of each (also as pairs), where `cost` is minimised.
@@ -61,7 +61,8 @@ def design_web(
     titer : float
         Mass of the fibre in g/m, 1 dtex is 1e-4.
     free : iterable of str
-        Among "noise", "sigma1", "sigma2", "speed_ratio", "spacing" and "titer".
+        Among "noise", "sigma1", "sigma2", "speed_ratio", "spacing", "titer" and, of
+        smooth fibres, "relaxation_length".
     bounds : mapping of str to (float, float), optional
         Lowest and highest value of free parameters; by default the industrial ranges
         of `Process`, none for the spacing, and no default for the titer.

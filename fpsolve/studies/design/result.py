@@ -22,7 +22,7 @@ class WebDesign(Saved):
     """The optimum of a web at fixed base weight: its process, its CV, their errors.
 
     SI units. Arrays over parameters have the order of `parameters`: noise, sigma1,
-    sigma2, speed_ratio, spacing, titer.
+    sigma2, speed_ratio, spacing, titer, relaxation_length, which is 0 of basic fibres.
 
     Attributes
     ----------

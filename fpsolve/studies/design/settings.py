@@ -12,8 +12,8 @@ from fpsolve.model.process import Process
 
 __all__ = ["BASE_WEIGHT", "OF_PROCESS", "PARAMETERS", "Settings"]
 
-OF_PROCESS = ("noise", "sigma1", "sigma2", "speed_ratio")
-PARAMETERS = (*OF_PROCESS, "spacing", "titer")
+OF_PROCESS = ("noise", "sigma1", "sigma2", "speed_ratio", "relaxation_length")
+PARAMETERS = (*OF_PROCESS[:4], "spacing", "titer", "relaxation_length")
 # log titer = log (base weight) + log v + log d, as the signs of these logarithms.
 BASE_WEIGHT = {"speed_ratio": 1.0, "spacing": 1.0, "titer": -1.0}
 # Of grams per second in kilograms per hour.
@@ -49,10 +49,14 @@ class Settings:
 
     @property
     def values(self) -> Array:
-        """The numbers of `PARAMETERS`, the belt speed without its sign."""
+        """The numbers of `PARAMETERS`, the belt speed without its sign.
+
+        The relaxation length of a basic fibre is zero.
+        """
         process = self.process
-        numbers = [getattr(process, name) for name in OF_PROCESS]
-        return np.abs([*numbers, self.spacing, self.titer])
+        numbers = [getattr(process, name) for name in OF_PROCESS[:4]]
+        length = process.relaxation_length or 0.0
+        return np.abs([*numbers, self.spacing, self.titer, length])
 
     def changed(self, names: tuple[str, ...], values: Array) -> Settings:
         """With other numbers for some parameters; the belt keeps its direction."""

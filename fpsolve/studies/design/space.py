@@ -134,6 +134,11 @@ class Space:
 def space_of(start: Settings, free: Any, bounds: Any) -> Space:
     """The space of the arguments of `design_web`, checked."""
     names = checked_names(free)
+    if "relaxation_length" in names and start.process.relaxation_length is None:
+        raise ValueError(
+            "`process` must have a `relaxation_length` for it to be free, got none; "
+            "where the search begins decides between the models."
+        )
     ends = checked_bounds({} if bounds is None else bounds, names)
     for name, pair in ends.items():
         for end in pair:

@@ -12,8 +12,8 @@ from fpsolve._support.checks import (
     check_positive,
 )
 from fpsolve.model.process import Process
-from fpsolve.spectral.evolution.quadratic import check_model, checked_tolerance
-from fpsolve.spectral.resolvent.fibre import scales_of
+from fpsolve.spectral.evolution.quadratic import checked_tolerance
+from fpsolve.spectral.resolvent.fibre import check_fibre, scales_of
 from fpsolve.studies.arguments import several
 from fpsolve.studies.design.front import SPEED
 from fpsolve.studies.design.settings import Settings
@@ -88,12 +88,7 @@ def task_of(
 def checked_start(process: Any, spacing: Any, titer: Any) -> Settings:
     """The settings from which a search begins."""
     check_kind("process", process, Process)
-    if process.relaxation_length is not None:
-        raise ValueError(
-            "`process` must have no `relaxation_length`, got "
-            f"{process.relaxation_length:g}; of smooth fibres CV has no slopes yet."
-        )
-    check_model(process.model)
+    check_fibre(process.model)
     if not abs(process.speed_ratio) > 0:
         raise ValueError(
             "`process` must have a belt in motion, got `speed_ratio` 0; on a belt at "
