@@ -6,10 +6,11 @@ from itertools import product
 import numpy as np
 import pytest
 from known_identifications import known_identification
-from web_numbers import NUMBERS, choose_few_nodes, model_of
+from web_numbers import NUMBERS, choose_few_nodes, choose_one_truncation, model_of
 
 import fpsolve as fp
 from fpsolve.web.prediction import WebPrediction
+from fpsolve.web.table import AXES, N_NODES
 
 NOISE, SPEED, SIGMA1, SIGMA2, SPACING = NUMBERS.tolist()
 PARAMETERS = {"sigma1": SIGMA1, "sigma2": SIGMA2, "noise": NOISE}
@@ -143,7 +144,7 @@ WIDE = np.diag([0.1, 0.5 * SIGMA2, 0.1]) ** 2
 @pytest.mark.parametrize(
     ("found", "said"),
     [
-        (identified(model=SMOOTH), "derivatives are known of the basic model only"),
+        (known_identification(SMOOTH), "one with sigma1, sigma2, noise and"),
         (identified(undetermined={"sigma1": "it is long"}), "sigma1 is not determined"),
         (identified(WIDE), "sigma2 has a standard error of 50 %"),
         (identified(COVARIANCE * np.nan), "sigma1 has a standard error of nan %"),
@@ -160,3 +161,82 @@ def test_a_prediction_that_has_no_slopes_is_refused(web):
         identified().cv_errors(replace(web, gradient=None))
     with pytest.raises(TypeError, match="`prediction` must be"):
         identified().cv_errors(0.1)
+
+
+def smooth_of(sigma1, sigma2, noise, curvature):
+    """The smooth model of what is identified."""
+    return fp.SmoothLayDownModel(
+        fp.QuadraticPotential(sigma1, sigma2), noise / curvature, noise,
+        fp.MovingBelt(SPEED),
+    )  # fmt: skip
+
+
+SMOOTH_VALUES = np.array([1.0, 0.8, 3.0, 10.0])
+
+
+@pytest.fixture
+def smooth_web():
+    """CV = 0.2 A^0.3 R^0.5/√(σ1 σ2), whose slopes are known."""
+    model = smooth_of(*SMOOTH_VALUES)
+    sigma1, sigma2, noise, _ = SMOOTH_VALUES
+    cv = 0.2 * noise**0.3 * 0.3**0.5 / np.sqrt(sigma1 * sigma2)
+    shares = [0.3 / noise, 0.0, -0.5 / sigma1, -0.5 / sigma2, 0.5 / 0.3, 0.0]
+    none = np.zeros(0)
+    return WebPrediction(
+        model, SPACING, 1.0, "random", np.ones(1), np.array([cv]), np.zeros(1), none,
+        none, none, none, none, none, np.eye(2), np.zeros((2, 2)),
+        ("noise", "belt_speed", "sigma1", "sigma2", "relaxation_length", "spacing"),
+        cv * np.array(shares)[:, None], np.zeros((6, 1)),
+    )  # fmt: skip
+
+
+def test_errors_of_smooth_fibres_are_those_of_drawn_noises_of_the_curvature(smooth_web):
+    """R = A/K has the errors of both: log CV = 0.8 log A − 0.5 log K − ½ log(σ1 σ2)."""
+    found = known_identification(smooth_web.model)
+    powers = np.array([-0.5, -0.5, 0.8, -0.5])
+    shares = powers / SMOOTH_VALUES
+    expected = smooth_web.cv * np.sqrt(shares @ found.covariance @ shares)
+    np.testing.assert_allclose(found.cv_errors(smooth_web), expected, rtol=1e-12)
+    unit = 5e-3
+    factors = unit ** np.array([1.0, 1.0, -0.5, -1.5])
+    metres = replace(
+        found, covariance=factors[:, None] * found.covariance * factors,
+        parameters=dict(zip(found.parameters, factors * SMOOTH_VALUES, strict=True)),
+    )  # fmt: skip
+    scale = unit ** np.array([-0.5, 0.0, 1.0, 1.0, 1.0, 1.0])[:, None]
+    of_process = replace(smooth_web, length=unit, gradient=smooth_web.gradient / scale)
+    np.testing.assert_allclose(metres.cv_errors(of_process), expected, rtol=1e-12)
+
+
+@pytest.mark.nightly
+def test_errors_of_smooth_fibres_are_half_the_spread_of_opposite_parameters(
+    monkeypatch,
+):
+    """√Σ of ((CV(θ + L) − CV(θ − L))/2)² over the columns L of √Σ.
+
+    Of one truncation between nodes that leave less than a per cent.
+    """
+    for axis in AXES:
+        monkeypatch.setitem(N_NODES, axis, 7)
+    choose_one_truncation(monkeypatch)
+
+    def smooth_cv(values, **options):
+        return fp.predict_web(
+            smooth_of(*values), spacing=SPACING, zones=0.7, tolerance=0.5, **options
+        )
+
+    web = smooth_cv(SMOOTH_VALUES, gradients=True)
+    found = known_identification(web.model)
+    halves = [
+        0.5 * (smooth_cv(SMOOTH_VALUES + one).cv - smooth_cv(SMOOTH_VALUES - one).cv)
+        for one in np.linalg.cholesky(found.covariance).T
+    ]
+    expected = np.sqrt(np.sum(np.square(halves)))
+    carried = found.cv_errors(web)[0]
+    slack = np.sqrt(np.diag(found.covariance)) @ [
+        web.gradient_errors[2, 0], web.gradient_errors[3, 0],
+        web.gradient_errors[0, 0] + web.gradient_errors[4, 0] / 10.0,
+        web.gradient_errors[4, 0] * 0.03,
+    ]  # fmt: skip
+    # Of third order over 5 per cent, and what moving nodes change.
+    assert carried - slack == pytest.approx(expected, rel=0.05)

@@ -49,10 +49,6 @@ class Identified(Protocol):
 
 def why_not_carried(identification: Identified) -> str | None:
     """Why errors of these parameters cannot be carried to a prediction, or None."""
-    if isinstance(identification.model, SmoothLayDownModel):
-        return (
-            "derivatives are known of the basic model only, and this is the smooth one"
-        )
     for name, why in identification.undetermined.items():
         return f"{name} is not determined: {why}"
     for name, error in identification.standard_errors.items():
@@ -68,6 +64,9 @@ def why_not_carried(identification: Identified) -> str | None:
 def carried_errors(identification: Identified, prediction: WebPrediction) -> Array:
     """√(g Σ gᵀ) of every zone, g = ∂CV/∂(σ1, σ2, A) and Σ the covariance.
 
+    Of smooth fibres g = ∂CV/∂(σ1, σ2, A, K): with R = A/K it is ∂_A + ∂_R/K at fixed K,
+    and −(R/K) ∂_R at fixed A.
+
     Standard errors that CV has because the parameters were identified, besides the
     `errors` of the prediction itself. The rounding and truncation of g are added, so
     that they are not too small; what is left out is of second order in the relative
@@ -76,15 +75,14 @@ def carried_errors(identification: Identified, prediction: WebPrediction) -> Arr
     Parameters
     ----------
     identification : Identification
-        Of the basic model.
     prediction : WebPrediction
         Of its model, with `gradients`.
 
     Raises
     ------
     ValueError
-        If the prediction has no gradients or is of another model, the model is the
-        smooth one, or parameters are not determined, or not to 30 per cent.
+        If the prediction has no gradients or is of another model, or parameters are not
+        determined, or not to 30 per cent.
     TypeError
         If it is no prediction.
     """
@@ -101,11 +99,34 @@ def carried_errors(identification: Identified, prediction: WebPrediction) -> Arr
             "`predict_web(..., gradients=True)`."
         )
     _check_same(identification, prediction)
-    rows = [prediction.parameters.index(name) for name in identification.parameters]
-    slopes, wrong = prediction.gradient[rows], prediction.gradient_errors[rows]
+    turn = in_identified(identification.parameters, prediction.parameters)
+    slopes = turn @ prediction.gradient
+    wrong = np.abs(turn) @ prediction.gradient_errors
     squares = np.einsum("iz,ij,jz->z", slopes, identification.covariance, slopes)
     deviations = np.sqrt(np.diag(identification.covariance))
     return np.asarray(np.sqrt(np.maximum(squares, 0.0)) + deviations @ wrong)
+
+
+def in_identified(values: dict[str, float], names: tuple[str, ...]) -> Array:
+    """Matrix from derivatives in parameters of a prediction to those identified.
+
+    Parameters
+    ----------
+    values : dict of float
+        Identified parameters, which have K where the predicted ones have R.
+    names : tuple of str
+        Of the prediction.
+    """
+    turn = np.zeros((len(values), len(names)))
+    for row, name in enumerate(values):
+        if name in names:
+            turn[row, names.index(name)] = 1.0
+    if "curvature_noise" in values:
+        order, by_length = list(values), names.index("relaxation_length")
+        noise, curvature = values["noise"], values["curvature_noise"]
+        turn[order.index("noise"), by_length] = 1.0 / curvature
+        turn[order.index("curvature_noise"), by_length] = -noise / curvature**2
+    return turn
 
 
 def _check_same(identification: Identified, prediction: WebPrediction) -> None:
@@ -118,6 +139,14 @@ def _check_same(identification: Identified, prediction: WebPrediction) -> None:
         "sigma2": length * model.potential.sigma2,
         "noise": model.noise / math.sqrt(length),
     }
+    if isinstance(model, SmoothLayDownModel):
+        predicted["curvature_noise"] = model.curvature_noise / length**1.5
+    if predicted.keys() != identification.parameters.keys():
+        raise ValueError(
+            "`prediction` must be of the identified model, got one with "
+            f"{', '.join(predicted)} and identified "
+            f"{', '.join(identification.parameters)}; predict `identification.model`."
+        )
     for name, value in identification.parameters.items():
         if not abs(predicted[name] - value) <= SAME * value:
             raise ValueError(

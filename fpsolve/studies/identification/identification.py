@@ -129,8 +129,9 @@ class Identification(Saved):
     def cv_errors(self, prediction: WebPrediction) -> Array:
         """√(g Σ gᵀ): standard errors of predicted CV by the errors of the parameters.
 
-        g = ∂CV/∂(σ1, σ2, A) from `predict_web(identification.model, …,
-        gradients=True)`, Σ the covariance; see `carried.carried_errors`.
+        g = ∂CV/∂(σ1, σ2, A), of smooth fibres also in K, from
+        `predict_web(identification.model, …, gradients=True)`, Σ the covariance; see
+        `carried.carried_errors`.
 
         Parameters
         ----------
@@ -143,8 +144,8 @@ class Identification(Saved):
         Raises
         ------
         ValueError
-            If the model is the smooth one, the prediction without gradients or of
-            another model, or a parameter not determined to 30 per cent.
+            If the prediction is without gradients or of another model, or a parameter
+            not determined to 30 per cent.
         """
         from fpsolve.studies.identification.carried import carried_errors
 
