@@ -27,7 +27,6 @@ from fpsolve.cli.web import (
 )
 
 if TYPE_CHECKING:
-    from fpsolve._support.arrays import Array
     from fpsolve.cli.config.web import WebConfig
     from fpsolve.studies.identification.identification import Identification
     from fpsolve.web.prediction import WebPrediction
@@ -150,20 +149,20 @@ def _predicted(
         return found
     reason = why_not_carried(identified)
     found = predict_web(model, **asked, gradients=reason is None)
-    carried = identified.cv_errors(found) if reason is None else None
-    print_prediction(found, " m", carried)
+    if reason is None:
+        found = identified.carry_errors(found)
+    print_prediction(found, " m")
     if reason is not None:
         print_lines(f"Errors of the parameters are not carried on: {reason}.")
     return found
 
 
-def print_prediction(
-    found: WebPrediction, unit: str, carried: Array | None = None
-) -> None:
+def print_prediction(found: WebPrediction, unit: str) -> None:
     """Print variation, cloudiness and ratio with bounds of their errors.
 
-    `carried` are standard errors of CV by those of identified parameters.
+    Where it has them, also standard errors of CV by those of identified parameters.
     """
+    carried = found.carried_errors
     rows = [
         (f"{zone:g}{unit}", f"{_said(cv, error)} %")
         for zone, cv, error in zip(found.zones, found.cv, found.errors, strict=True)

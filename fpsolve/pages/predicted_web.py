@@ -61,7 +61,19 @@ def _tables(prediction: WebPrediction) -> list[Block]:
     if strips:
         told = "Strips of the mean web, relative to it."
         tables.append(Table(told, ("period", "amplitude", "error"), strips))
-    return tables + _gradients(prediction)
+    return tables + _carried(prediction) + _gradients(prediction)
+
+
+def _carried(prediction: WebPrediction) -> list[Block]:
+    """What the errors of identified parameters make of CV."""
+    if prediction.carried_errors is None:
+        return []
+    rows = [
+        (f"{side:g}", f"{error:.2g}")
+        for side, error in zip(prediction.zones, prediction.carried_errors, strict=True)
+    ]
+    told = "Standard errors of CV by those of the identified parameters."
+    return [Table(told, ("side", "standard error"), rows)]
 
 
 def _gradients(prediction: WebPrediction) -> list[Block]:

@@ -82,6 +82,9 @@ PREDICTION = Layout(
     Variable("orientation_gradient_error", ("parameter", "row", "column"),
              "error of ∂⟨τ⊗τ⟩/∂parameter", "orientation_gradient_errors",
              optional=True),
+    Variable("carried_error", ("zone",),
+             "standard error of CV by the errors of identified parameters",
+             "carried_errors", optional=True),
 )  # fmt: skip
 
 
@@ -126,6 +129,9 @@ class WebPrediction(Saved):
         ∂ of `cloudiness`, of shape (parameter, band).
     orientation_gradient, orientation_gradient_errors : ndarray or None
         ∂ of `orientation`, of shape (parameter, 2, 2).
+    carried_errors : ndarray, shape (n_zones,), or None
+        Standard errors of CV by those of identified parameters, where
+        `Identification.carry_errors` has added them.
     call : Call or None
         How it was made.
     provenance : dict
@@ -159,6 +165,7 @@ class WebPrediction(Saved):
     cloudiness_gradient_errors: Array | None = None
     orientation_gradient: Array | None = None
     orientation_gradient_errors: Array | None = None
+    carried_errors: Array | None = None
     call: Call | None = None
     provenance: dict[str, Any] = field(default_factory=dict)
 

@@ -255,6 +255,7 @@ def test_errors_of_parameters_are_carried_to_a_prediction(
     assert result.exit_code == 0, result.output
     predicted = fp.load(tmp_path / "out" / "web-prediction.nc")
     carried = fp.load(identification).cv_errors(predicted)
+    np.testing.assert_array_equal(predicted.carried_errors, carried)
     assert f"± {100 * carried[0]:.2g} %" in result.stdout
     assert "of the parameters" in result.stdout
     assert "0.002 m" in result.stdout

@@ -57,6 +57,21 @@ def test_carried_errors_are_those_of_drawn_parameters(web):
     np.testing.assert_allclose(identified().cv_errors(web), spread, rtol=0.022)
 
 
+def test_carried_errors_are_stored_with_the_prediction(web, tmp_path):
+    carried = identified().carry_errors(web)
+    np.testing.assert_array_equal(carried.carried_errors, identified().cv_errors(web))
+    assert web.carried_errors is None
+    np.testing.assert_array_equal(
+        carried.to_xarray().carried_error, carried.carried_errors
+    )
+    loaded = fp.load(carried.save(tmp_path / "prediction.nc"))
+    np.testing.assert_array_equal(loaded.carried_errors, carried.carried_errors)
+    assert fp.load(web.save(tmp_path / "without.nc")).carried_errors is None
+    page = fp.report(carried, tmp_path / "page.html").read_text("utf-8")
+    assert "by those of the identified parameters" in page
+    assert f"{carried.carried_errors[1]:.2g}" in page
+
+
 def test_errors_of_the_slopes_make_carried_errors_larger(web):
     wrong = 0.1 * np.abs(web.gradient)
     sure, unsure = (

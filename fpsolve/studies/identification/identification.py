@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
@@ -150,6 +150,24 @@ class Identification(Saved):
         from fpsolve.studies.identification.carried import carried_errors
 
         return carried_errors(self, prediction)
+
+    def carry_errors(self, prediction: WebPrediction) -> WebPrediction:
+        """The prediction with `carried_errors`, stored with it: those of `cv_errors`.
+
+        Parameters
+        ----------
+        prediction : WebPrediction
+
+        Returns
+        -------
+        WebPrediction
+
+        Raises
+        ------
+        ValueError
+            As `cv_errors`.
+        """
+        return replace(prediction, carried_errors=self.cv_errors(prediction))
 
     def __repr__(self) -> str:
         errors = self.standard_errors
