@@ -1,6 +1,6 @@
-"""Cells per second of whole steps, from 32³ to 128³ cells.
+"""Cells per second of whole steps, from 32³ to 192³ cells.
 
-    python validation/performance/scaling_cells.py            # 1 minute
+    python validation/performance/scaling_cells.py            # 2 minutes
 
 CPU time of `N_STEPS` steps of ds = 1/8 from the benchmark's start, records excluded,
 one thread. Writes results/benchmark-cells.json.
@@ -19,7 +19,7 @@ from ours import Case, case, make_scheme, make_start  # noqa: E402
 from timing import keep_memory, measure  # noqa: E402
 
 DS, N_STEPS = 1 / 8, 4
-SIZES, QUICK_SIZES = (32, 48, 64, 96, 128), (16, 24)
+SIZES, QUICK_SIZES = (32, 48, 64, 96, 128, 192), (16, 24)
 SHARP = {"balanced": True, "interpolation_order": 16}
 
 
