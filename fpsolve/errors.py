@@ -94,7 +94,7 @@ class FpsolveError(Exception):
 
 
 class RunError(FpsolveError):
-    """A run stopped because going on would give a wrong density.
+    """A run stopped because going on would give a wrong result.
 
     Attributes
     ----------
@@ -400,7 +400,7 @@ class SteadyStateError(FpsolveError):
 
 
 @stated
-class EdgeLengthError(FpsolveError):
+class EdgeLengthError(RunError):
     """A step of a fibre that keeps its length was not found."""
 
     t: float = said("Time at which the step begins.")

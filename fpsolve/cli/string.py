@@ -65,7 +65,7 @@ def string(
         name = chosen.output.name
         frame.figures = chosen.output.figures and not no_figures
         frame.claim(chosen.output.file_name, f"{name}.png", f"{name}-curve.nc")
-        found = _laid(chosen)
+        found = _laid(frame, chosen, f"{name}-checkpoint.nc")
         used = command_line(
             "string", *([] if config is None else [str(config)]), **keys
         )
@@ -91,11 +91,23 @@ def print_lay_down(found: LayDown) -> None:
     ])  # fmt: skip
 
 
-def _laid(chosen: StringConfig) -> LayDown:
+def _laid(frame: Frame, chosen: StringConfig, kept: str) -> LayDown:
+    """The fibre; what is interrupted is kept, and gone on with."""
     from fpsolve.fibre.laying import lay_down
 
-    problem = chosen.build()
-    return lay_down(problem.string, **problem.arguments)
+    problem, checkpoint = chosen.build(), frame.out / kept
+    frame.claim(kept)
+    said = f"the same command goes on from `{checkpoint}`"
+    with frame.computing(kept=said) as report:
+
+        def begun(n_done: int, n_total: int, t: float) -> None:
+            # Not before a step was found: a mistake leaves no folder.
+            frame.path(kept)
+            report(n_done, n_total, t)
+
+        return lay_down(
+            problem.string, **problem.arguments, progress=begun, checkpoint=checkpoint
+        )
 
 
 def _write_curve(frame: Frame, found: LayDown, chosen: StringConfig) -> None:

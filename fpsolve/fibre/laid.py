@@ -62,6 +62,8 @@ class LayDown(Saved):
         four times that distance where a tolerance takes steps in halves.
         Infinite for an odd number of steps, or if not asked for. Where loops form by
         buckling, small changes grow, and it is as large as they are.
+    status : str
+        "finished"; "interrupted" or "failed" of a run that is not at its end.
     call : Call or None
         How the result was made.
     provenance : dict
@@ -86,6 +88,7 @@ class LayDown(Saved):
     r: tuple[Array, ...]
     last: FedChain
     position_error: float = np.inf
+    status: str = "finished"
     call: Call | None = field(default=None, kw_only=True)
     provenance: dict[str, Any] = field(default_factory=dict, kw_only=True)
 

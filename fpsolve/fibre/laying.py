@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, replace
+import os
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,17 +14,20 @@ from fpsolve._support.checks import (
     check_flag,
     check_integer,
     check_kind,
+    check_path,
     check_positive,
     check_real,
     shown,
 )
-from fpsolve.evolution.call import recorded
+from fpsolve._support.progress import ProgressCallback, reporting
+from fpsolve.evolution.call import Call, recorded
 from fpsolve.fibre.air import AirFlow
 from fpsolve.fibre.ends import Belt, Free, Nozzle
 from fpsolve.fibre.fed_chain import FedChain, FedStep
 from fpsolve.fibre.fed_noise import FedDraws
-from fpsolve.fibre.halving import Halving
 from fpsolve.fibre.laid import LayDown
+from fpsolve.fibre.lay_keeper import Keeper
+from fpsolve.fibre.lay_run import LayRun, Record
 from fpsolve.fibre.random_force import StochasticForce, checked_law
 from fpsolve.fibre.rest import equilibrium
 from fpsolve.fibre.shapes import checked_shape, checked_vectors
@@ -54,6 +58,8 @@ def lay_down(
     tolerance: float | None = None,
     save_every: int | None = None,
     estimate_error: bool = True,
+    progress: bool | ProgressCallback = False,
+    checkpoint: str | os.PathLike[str] | None = None,
 ) -> LayDown:
     """ρA ∂_tt r = ∂_s(T ∂_s r − ∂_s(EI ∂_ss r)) + ρA g + a, fed at v_in, z ≥ height.
 
@@ -103,6 +109,12 @@ def lay_down(
     estimate_error : bool
         Repeat the motion with half of the steps, for `position_error`; in turbulence
         driven by the same noise.
+    progress : bool or callable
+        A bar, or a function of (steps done, steps in all, time).
+    checkpoint : path, optional
+        File in which the run is kept every minute and where Ctrl-C or an error ends it.
+        The same call goes on from there, to the bits of a run that never stopped, and
+        removes it at the end.
 
     Returns
     -------
@@ -120,14 +132,20 @@ def lay_down(
         If the fibre leaves the table of the air.
     ToleranceError
         If the tolerance is not reached by steps of 1/4096 of the given ones.
+    RunInterrupted
+        By Ctrl-C; its `solution` is the fibre until then.
     EdgeLengthError
         If Newton's method does not converge, however short the step is, as for a belt
-        that pulls at a straight fibre faster than it is spun.
+        that pulls at a straight fibre faster than it is spun. Its `solution` is the
+        fibre until then.
+    FileFormatError
+        If the checkpoint is damaged, or no fibre.
 
     References
     ----------
     [KMW09]_, section 2.2.
     """
+    call = Call.of("lay_down", locals())
     t_end = check_positive("t_end", t_end)
     n_steps = check_integer("n_steps", n_steps, 1)
     every = n_steps
@@ -142,16 +160,26 @@ def lay_down(
     allowed = np.inf
     if tolerance is not None:
         allowed = check_positive("tolerance", tolerance)
-    found = _Run(step, t_end, n_steps, every, allowed, draws).result(first)
-    if not estimate_error or n_steps % 2:
-        return found
-    # Of steps twice as long, whose errors are four times as large.
-    if draws is not None:
-        draws = replace(draws, dt=2 * draws.dt, pieces=2)
-    run = _Run(step, t_end, n_steps // 2, n_steps, 4 * allowed, draws)
-    other = run.result(first)
-    away = (SAFE if tolerance is None else SAFE_OF_HALVES) * found.distance(other)
-    return replace(found, position_error=away)
+    t = np.linspace(0.0, t_end, n_steps + 1)
+    path = None if checkpoint is None else check_path("checkpoint", checkpoint)
+    keeper = Keeper(path, call)
+    part = keeper.found()
+    record = Record.first(t, first) if part is None else Record.of(part, t, every)
+    with reporting(progress) as report:
+        found = LayRun(step, every, allowed, draws).result(record, report, keeper)
+    if estimate_error and n_steps % 2 == 0:
+        # Of steps twice as long, whose errors are four times as large.
+        if draws is not None:
+            draws = replace(draws, dt=2 * draws.dt, pieces=2)
+        run, half = (
+            LayRun(step, n_steps, 4 * allowed, draws),
+            Record.first(t[::2], first),
+        )
+        other = run.result(half, lambda *_: None)
+        safe = SAFE if tolerance is None else SAFE_OF_HALVES
+        found = replace(found, position_error=safe * found.distance(other))
+    keeper.remove()
+    return found
 
 
 def _checked_step(
@@ -227,74 +255,3 @@ def _check_height(step: FedStep, r: Array, shaken: bool) -> None:
             "`string` must not hang straight above the belt, where nothing says to "
             "which side it buckles; tilt the `direction` of its nozzle a little."
         )
-
-
-@dataclass(eq=False)
-class _Run:
-    """Steps one after the other, and what is kept of them."""
-
-    step: FedStep
-    t_end: float
-    n_steps: int
-    every: int
-    tolerance: float
-    draws: FedDraws | None
-    iterations: int = field(default=0, init=False)
-
-    def result(self, chain: FedChain) -> LayDown:
-        """What `lay_down` returns."""
-        t = np.linspace(0.0, self.t_end, self.n_steps + 1)
-        series = np.zeros((6, t.size))
-        series[:, 0] = *self._seen(chain), 0
-        behind, shapes, saved = [], [chain.r], [0]
-        advanced = Halving(self._stepped, _apart, self.tolerance)
-        for number in range(1, t.size):
-            self.iterations = advanced.rejected = 0
-            if self.draws is not None:
-                self.draws.draw(number)
-            chain = advanced(chain, t[number - 1], t[number] - t[number - 1])
-            series[:, number] = *self._seen(chain), advanced.rejected
-            chain, left = chain.trimmed(self.step.belt, t[number])
-            behind.append(left)
-            if number % self.every == 0 or number == t.size - 1:
-                shapes.append(chain.r)
-                saved.append(number)
-        landed = np.concatenate([*behind, chain.lying])
-        kinetic, tension, stretched, free, iterations, rejected = series
-        counted = np.array([iterations, rejected], dtype=np.int64)
-        return LayDown(
-            self.step.string, self.step.belt, t, kinetic, tension, stretched, free,
-            counted[0], counted[1], landed[:, :2], landed[:, 2], t[saved],
-            tuple(shapes), chain,
-        )  # fmt: skip
-
-    def _stepped(self, chain: FedChain, t: float, dt: float) -> FedChain:
-        """At t + dt, with what has come out."""
-        force = None
-        if self.draws is not None:
-            masses = self.step.numbers(chain.tension.size).masses
-            force = self.draws.force(chain, masses, t)
-        new, iterations = self.step(chain, t, dt, force)
-        self.iterations += iterations
-        return self.step.after_feeding(new, t + dt)
-
-    def _seen(self, chain: FedChain) -> tuple[float, ...]:
-        """The series at one time."""
-        string, air = self.step.string, ~chain.laid
-        masses = self.step.numbers(chain.tension.size).masses
-        lengths = np.linalg.norm(np.diff(chain.r, axis=0), axis=1)
-        return (
-            0.5 * masses[air] @ (chain.v[air] ** 2).sum(axis=1),
-            float(np.abs(chain.tension).max()),
-            float(np.abs(lengths / string.edge - 1).max()),
-            string.edge * float((air[:-1] | air[1:]).sum()),
-            self.iterations,
-        )
-
-
-def _apart(before: FedChain, one: FedChain, other: FedChain) -> float:
-    """Largest distance of nodes; 0 where one has landed since, which has no order."""
-    landed = before.laid.sum()
-    if one.laid.sum() > landed or other.laid.sum() > landed:
-        return 0.0
-    return float(np.linalg.norm(one.r - other.r, axis=1).max())

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from fpsolve._support.labels import to_json
+from fpsolve._support.labels import check_complete, to_json
 from fpsolve.evolution.layout import (
     Attribute,
     Layout,
@@ -18,6 +18,7 @@ from fpsolve.evolution.layout import (
     check_counts,
     check_dimensions,
 )
+from fpsolve.evolution.parts import STATUS
 from fpsolve.fibre.ends import Belt
 from fpsolve.fibre.fed_chain import FedChain
 from fpsolve.fibre.string import String
@@ -96,6 +97,32 @@ class _InTheAir(Part):
         return {"r": tuple(np.split(r, np.cumsum(counts)[:-1]))}
 
 
+class _Landed(Part):
+    """Nodes on the belt and since when; left out without any, as files must have it."""
+
+    _over = ("landed", "component")
+
+    def write(self, result: Any) -> Stored:
+        if not len(result.landed):
+            return {}
+        place = {"long_name": "nodes on the belt, in its frame", "units": "m"}
+        since = {"long_name": "since when a node lies", "units": "s"}
+        return {
+            "landed": (self._over, result.landed, place),
+            "landing_times": (self._over[:1], result.landing_times, since),
+        }
+
+    def read(self, source: Source) -> dict[str, Any]:
+        dataset = source.dataset
+        if "landed" not in dataset:
+            return {"landed": np.empty((0, 2)), "landing_times": np.empty(0)}
+        check_complete(dataset, "landing_times")
+        check_dimensions(dataset, "landed", self._over)
+        check_dimensions(dataset, "landing_times", self._over[:1])
+        names = ("landed", "landing_times")
+        return {name: dataset[name].values for name in names}
+
+
 class _Last(Part):
     """The end of the run, from which it goes on."""
 
@@ -163,11 +190,10 @@ LAY_DOWN = Layout(
     *_SERIES,
     Quantity("free_length", ("t",), "length of fibre that does not lie", units="m"),
     Quantity("rejected", ("t",), "steps that were taken in halves"),
-    Quantity("landed", ("landed", "component"), "nodes on the belt, in its frame",
-             units="m"),
-    Quantity("landing_times", ("landed",), "since when a node lies", units="s"),
+    _Landed(),
     _SAVED,
     _InTheAir(),
     _Last(),
     _ERROR,
+    STATUS,
 )  # fmt: skip

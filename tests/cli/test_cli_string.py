@@ -1,5 +1,7 @@
 """`fpsolve string` says what `fibre.lay_down` says; a mistake leaves no file."""
 
+from contextlib import contextmanager
+
 import pytest
 from command_line import assert_mistake, files
 
@@ -12,6 +14,7 @@ from fpsolve.cli.config import (
     load_config,
     read_config,
 )
+from fpsolve.cli.errors import INTERRUPTED
 
 SPUN = """
 [fibre]
@@ -86,6 +89,30 @@ def test_the_configuration_that_was_used_is_kept(fpsolve, config, tmp_path):
     asked = load_config(config, StringConfig)
     assert used == asked.changed("steps", t_end=0.1, n_steps=20)
     assert about["command"] == f"fpsolve string {config} --t-end 0.1 --n-steps 20"
+
+
+def test_after_ctrl_c_the_same_command_goes_on(fpsolve, config, tmp_path, monkeypatch):
+    @contextmanager
+    def pressed():
+        def report(n_done, n_total, t):
+            if n_done == 20:
+                raise KeyboardInterrupt
+
+        yield report
+
+    words = ("string", config, "--no-figures", "--out", "out")
+    with monkeypatch.context() as patch:
+        patch.setattr("fpsolve.cli.progress.progress_bar", pressed)
+        result = fpsolve(*words)
+    assert result.exit_code == INTERRUPTED
+    part = tmp_path / "out" / "spun-checkpoint.nc"
+    assert "interrupted; the same command goes on from" in result.stderr
+    assert fp.load(part).t.size == 21
+    assert fpsolve(*words).exit_code == 0
+    assert not part.exists()
+    assert fpsolve(*words[:-1], "whole").exit_code == 0
+    both = (fp.load(tmp_path / name / "spun.nc") for name in ("out", "whole"))
+    assert fp.compare(*both).equal
 
 
 @pytest.mark.parametrize(
