@@ -50,7 +50,10 @@ def columns_of(method, kind, placement, numbers):
     return method.short(generator, (law, generator), (1.0, 4.0))
 
 
-@pytest.mark.parametrize("kind", ["long", "at rest", "short", "limit"])
+@pytest.mark.parametrize(
+    "kind",
+    ["long", "at rest", pytest.param("short", marks=pytest.mark.nightly), "limit"],
+)
 def test_differences_converge_with_order_two_at_every_halving(monkeypatch, fibre, kind):
     """Of truncations whose Gaussians stay: derivatives are theirs, adjoint or not."""
     # So that the iteration is no part of differences.
@@ -116,6 +119,7 @@ def test_values_and_errors_are_those_without_derivatives(fibre):
     assert errors[:, 0] == pytest.approx(of_plain, rel=1e-4)
 
 
+@pytest.mark.nightly
 def test_the_law_of_the_angle_has_the_derivatives_that_are_known(fibre):
     """E cos α = −v, ∂/∂v = −1 and no other; nothing of E cos 2α knows the unit."""
     law, coarse = fibre.laws(2e-3)
