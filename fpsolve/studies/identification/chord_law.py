@@ -20,6 +20,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -66,7 +67,7 @@ def chord_law(at: Parameters, ds: float, position_error: float = 0.0) -> ChordLa
     x = ds / length if length else math.inf
     # E κ² = K²R/2 + E cos²α/σ1² + E sin²α/σ2² - v²/σ1² of a stationary fibre.
     bent = 0.5 * at.noise**2 / length + max(0.0, *at.strength) if length else 0.0
-    free, covariance = _free_factors(x, ds), _covariance(at, ds)
+    free, covariance = _free_factors(x, ds), at.noise**2 * _covariance(length, ds)
     paths, pulls = along_chord(x, ds), pulls_along_chord(x, ds)
     among, kicks = kicks_along_chord(x, ds)
     among, kicks = at.noise**2 * among, at.noise**2 * kicks
@@ -96,6 +97,7 @@ def chord_law(at: Parameters, ds: float, position_error: float = 0.0) -> ChordLa
     )
 
 
+@lru_cache(maxsize=32)
 def _free_factors(x: float, h: float) -> Array:
     """What (κ, α - α₀, ᾱ - α₀) after a chord are for κ = 1, F = 1 and D = 1."""
     p1, p2 = (0.0 if math.isinf(x) else float(phi(k, x)) for k in (1, 2))
@@ -109,12 +111,13 @@ def _free_factors(x: float, h: float) -> Array:
     )
 
 
-def _covariance(at: Parameters, h: float) -> Array:
-    """Covariance of the noise of (κ, α, ᾱ)."""
-    if not at.relaxation_length:
+@lru_cache(maxsize=32)
+def _covariance(relaxation_length: float, h: float) -> Array:
+    """Covariance of the noise of (κ, α, ᾱ) for A = 1."""
+    if not relaxation_length:
         # κ of the basic model is the force.
         unit = np.array([[0.0, 0.0, 0.0], [0.0, 1.0, 1 / 2], [0.0, 1 / 2, 1 / 3]])
-        return np.asarray(at.noise**2 * h * unit)
-    n11, n21, n22, n31, n32, n33 = smooth_step(at.relaxation_length, at.noise, h).noise
+        return np.asarray(h * unit)
+    n11, n21, n22, n31, n32, n33 = smooth_step(relaxation_length, 1.0, h).noise
     root = np.array([[n11, 0.0, 0.0], [n21, n22, 0.0], [n31, n32, n33]])
     return np.asarray(root @ root.T)

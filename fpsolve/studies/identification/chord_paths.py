@@ -1,12 +1,14 @@
 """Angles along a chord: of what is known, of noise, and what forces there do.
 
 α responds to a force after a length τ h by g₁(τ), after a force that lasts by g₂(τ):
-gₖ(t) = x tᵏ φₖ(xt), x = h/R, and t^{k-1}/(k-1)! for the basic model, x = ∞.
+gₖ(t) = x tᵏ φₖ(xt), x = h/R, and t^{k-1}/(k-1)! for the basic model, x = ∞. Nothing
+here depends on what a likelihood varies most, the noise and the force, and is kept.
 """
 
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -36,6 +38,8 @@ NODES, WEIGHTS = _gauss(_N)
 _LAGRANGE = np.linalg.inv(np.vander(NODES, increasing=True))
 _FACTORIALS = np.array([float(math.factorial(j)) for j in range(_N)])
 _CENTRED = np.eye(_N) - WEIGHTS
+# Relaxation lengths of which laws are kept: those of a gradient and of a Hessian.
+_KEPT = 32
 # Those of integrals from the start of a chord to a node.
 _INNER, _INNER_WEIGHTS = _gauss(16)
 
@@ -48,6 +52,7 @@ def grown(k: int, x: float, t: ArrayLike) -> Array:
     return np.asarray(x * t**k * phi(k, x * t))
 
 
+@lru_cache(maxsize=_KEPT)
 def along_chord(x: float, h: float) -> Array:
     """α at the nodes for κ = 1, F = 1 and D = 1; (3, n)."""
     of_kappa = 0.0 * NODES if math.isinf(x) else NODES * phi(1, x * NODES)
@@ -55,6 +60,7 @@ def along_chord(x: float, h: float) -> Array:
     return h * np.array([of_kappa, second, third - 0.5 * second])
 
 
+@lru_cache(maxsize=_KEPT)
 def kicks_along_chord(x: float, h: float) -> tuple[Array, Array]:
     """Covariances for A = 1 of the noise of α at the nodes.
 
@@ -74,6 +80,7 @@ def kicks_along_chord(x: float, h: float) -> tuple[Array, Array]:
     return h * (among + np.triu(among, 1).T), h * np.array(at_end)
 
 
+@lru_cache(maxsize=_KEPT)
 def pulls_along_chord(x: float, h: float) -> tuple[Array, Array]:
     """What a force α - ᾱ, times c/h, does to (κ, α, ᾱ) at the end; (3, n) each.
 
