@@ -288,7 +288,7 @@ def test_sectors_give_what_products_give(monkeypatch):
 
 @pytest.mark.parametrize("noise", [0.7, 4.0])
 def test_bounds_hold_and_are_within_the_tolerance(noise):
-    model = fp.LayDownModel(fp.QuadraticPotential(0.9), noise)
+    model = fp.LayDownModel(fp.QuadraticPotential(0.9, 0.9), noise)
     stops = (0.0, 0.1, 0.4)
     sharp = fp.spectral_solve(model, LAW, stops, tolerance=1e-8)
     for tolerance in (1e-2, 1e-4, 1e-6):

@@ -15,7 +15,7 @@ from fpsolve.spectral.evolution.expansion import Expansion
 from fpsolve.spectral.evolution.projection import DensityStart, GaussianStart
 from fpsolve.spectral.evolution.sector_expansion import SectorExpansion
 
-__all__ = ["in_sectors", "of_density", "of_gaussian", "turned"]
+__all__ = ["in_sectors", "of_density", "of_gaussian", "turned", "turned_back"]
 
 # Degrees of a Gaussian that are tried, one after another; and the last of them that
 # tell how fast the rest decays.
@@ -145,6 +145,23 @@ def turned(h: Expansion) -> Complex:
         if n:
             rotation = next_rotation(rotation)
         result[i, n - i] = rotation.conj() @ values[i, n - i]
+    return result
+
+
+def turned_back(circles: Complex) -> Expansion:
+    """The inverse of `turned`."""
+    degree, harmonics = circles.shape[0] - 1, circles.shape[2] - 1
+    result = Expansion.empty(np.full(degree + 1, harmonics))
+    values = np.zeros_like(circles)
+    rotation = np.ones((1, 1), complex)
+    for n in range(degree + 1):
+        i = np.arange(n + 1)
+        if n:
+            rotation = next_rotation(rotation)
+        values[i, n - i] = rotation.T @ circles[i, n - i]
+    values *= ((-1j) ** np.arange(degree + 1))[:, None]
+    result.values[:-1, :-1, :-2] = values.view(np.float64)
+    result.clear_outside()
     return result
 
 

@@ -16,7 +16,7 @@ from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.model.fibre import FibreModel
 from fpsolve.model.laydown import LayDownModel
 from fpsolve.model.smooth import SmoothLayDownModel
-from fpsolve.spectral.evolution import quadrature
+from fpsolve.spectral.evolution import quadrature, sector_steady
 from fpsolve.spectral.evolution.expansion import Expansion
 from fpsolve.spectral.evolution.exponential import ForwardOperator
 from fpsolve.spectral.evolution.layout import STEADY
@@ -41,6 +41,8 @@ __all__ = ["SpectralSteadyState", "spectral_steady_state"]
 
 # Degree of the first truncation and its growth.
 DEGREE, RATIO = 24, 1.3
+# The same where sectors are coupled.
+DEGREE_OF_SECTORS = 68
 ROUNDING = 1e-15
 _LIMIT = "memory_limit"
 
@@ -112,7 +114,9 @@ def spectral_steady_state(
     Of a basic fibre, the null vector of the forward equation in the basis of
     `spectral_solve`. Degrees only couple to their neighbours, so that it is found by
     block elimination from degree 0, where the mass is given, upwards. On a belt at
-    rest it is p_S, exactly.
+    rest it is p_S, exactly. Where that does not fit and B is isotropic, from sectors of
+    the angular index M, each factorised alone, which the belt couples to M ± 1, by
+    GMRES.
     Refined until every moment changes by less than `tolerance`.
 
     Of a smooth fibre, for an isotropic B on a belt at rest, the null vector of the
@@ -168,6 +172,8 @@ def basic_steady_state(
         degree = round(RATIO * degree)
         limits = truncation_limits(degree)
         if memory_of(limits) > memory_limit:
+            if quadratic(model).isotropic:
+                return between_sectors(model, tolerance, memory_limit, float(reached))
             raise ToleranceError(float(reached), tolerance, remedy)
         fine = stationary(model, limits)
         if not (np.isfinite(coarse.values).all() and np.isfinite(fine.values).all()):
@@ -177,13 +183,36 @@ def basic_steady_state(
             )
             raise ToleranceError(np.inf, tolerance, remedy)
         result = compared(model, coarse, fine)
-        reached = max(
-            error / max(1.0, abs(result.moments[name]))
-            for name, error in result.errors.items()
-        )
+        reached = worst_error(result)
         if reached <= tolerance:
             return result
         coarse = fine
+
+
+def between_sectors(
+    model: LayDownModel, tolerance: float, memory_limit: float, reached: float
+) -> SpectralSteadyState:
+    """The same where elimination does not fit, from sectors of the angular index."""
+    degree, remedy = DEGREE_OF_SECTORS, "raise `memory_limit` or `tolerance`"
+    coarse = None
+    while sector_steady.memory_of(degree) <= memory_limit:
+        fine = sector_steady.SectorsOnBelt(model, degree).stationary()
+        if coarse is not None:
+            result = compared(model, coarse, fine)
+            error = worst_error(result)
+            reached = min(reached, error)
+            if error <= tolerance:
+                return result
+        coarse, degree = fine, round(RATIO * degree)
+    raise ToleranceError(reached, tolerance, remedy)
+
+
+def worst_error(result: SpectralSteadyState) -> float:
+    """Largest error of a moment, relative where it is above one."""
+    return max(
+        error / max(1.0, abs(result.moments[name]))
+        for name, error in result.errors.items()
+    )
 
 
 def compared(
