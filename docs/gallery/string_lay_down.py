@@ -8,17 +8,8 @@ fibres of the two lay-down models that were identified from them. Here the strin
 above the belt, and white noise pulls at it on the way.
 """
 
-import numpy as np
-
 import fpsolve as fp
 from fpsolve import fibre
-
-
-class Gusts:
-    """Noise of one strength everywhere, in N s^½/m^½."""
-
-    def amplitudes(self, string, air, r, v, t):
-        return np.broadcast_to(1e-5 * np.eye(3), (len(r), 3, 3))
 
 
 def laid(radius, angular_speed):
@@ -29,7 +20,7 @@ def laid(radius, angular_speed):
     string = fibre.String(0.25, 2e-4, 1000.0, 3e8, nozzle, fibre.Free(), n_edges=25)
     run = fibre.lay_down(
         string, 8.0, 4000, belt=fibre.Belt(0.1, settling_time=0.3),
-        air=fibre.AirFlow((0.0, 0.0, 0.0)), turbulence=Gusts(), seed=3,
+        air=fibre.AirFlow((0.0, 0.0, 0.0)), turbulence=fibre.RandomForce(1e-5), seed=3,
         estimate_error=False,
     )  # fmt: skip
     return run.laid_curve(skip=0.5)
