@@ -74,3 +74,6 @@ print(f"edges keep their length to {max(one.stretched.max() for one in laid):.0e
 # **Compared with the paper.** The flow of figure 2 is that of a plant, from a flow
 # solver; `AirFlow.from_file` reads such tables. The paper's fibres come from a row of
 # nozzles, and all of these from one: what tells them apart is the noise alone.
+#
+# **Cost.** 18 s of CPU time on a machine that others used, 1.2 s for every metre that
+# comes out, with edges of 5 mm.
