@@ -133,6 +133,13 @@ def longest(counts, index, equation):
 
 
 @njit(cache=True, error_model="numpy")
+def fits(counts, index, equation, largest):
+    """Whether the counts are allowed, and all roots that they and their edge need."""
+    degree = 2 * counts.max() + counts.size + index + 4 * LANES
+    return counts.sum() <= largest and degree < equation.roots.size
+
+
+@njit(cache=True, error_model="numpy")
 def evolve_sector(c, counts, index, equation, length, allowance):
     """e^{length L*} c: the sector, its counts, error, work, and how it ended.
 
@@ -143,10 +150,10 @@ def evolve_sector(c, counts, index, equation, length, allowance):
     reached, error, flown, work, margin, trials = 0.0, 0.0, 0.0, 0.0, 1.0, 0
     c, counts, lost = fitted(c, counts, index, FITTING * rate * length, margin)
     error += lost
+    if not fits(counts, index, equation, largest):
+        return c, counts, error, work, TOO_LARGE
     before = flux(c, counts, index, equation)
     while reached < length:
-        if counts.sum() > largest:
-            return c, counts, error, work, TOO_LARGE
         ds = min(longest(counts, index, equation), length - reached)
         moved, n = advance_sector(c, counts, index, equation, ds, SERIES * rate * ds)
         spent = (n + FITTING_TERMS) * counts.sum() + AT_LEAST
@@ -171,5 +178,7 @@ def evolve_sector(c, counts, index, equation, length, allowance):
                 margin = max(1.0, margin / NARROWER)
             c, counts, lost = fitted(moved, counts, index, FITTING * rate * ds, margin)
         error += lost
+        if not fits(counts, index, equation, largest):
+            return c, counts, error, work, TOO_LARGE
         before = flux(c, counts, index, equation)
     return c, counts, error + np.sqrt(flown), work, DONE

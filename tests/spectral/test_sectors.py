@@ -315,6 +315,16 @@ def test_much_and_little_noise_end_within_the_work():
             fp.spectral_solve(model, LAW, s, tolerance=1e-3, work_limit=1e7)
 
 
+def test_counts_beyond_the_roots_or_the_memory_end_a_sector():
+    c, counts = scattered(ODD)
+    for roots, largest in ((16, 1e6), (200, 10.0)):
+        few = equation(1.0)._replace(roots=np.sqrt(np.arange(float(roots))))
+        allowance = sector_evolution.Allowance(1.0, 1.0, largest, 1e9)
+        ended = sector_evolution.evolve_sector(c, counts, 3, few, 1.0, allowance)
+        assert ended[-1] == sector_evolution.TOO_LARGE
+        assert not sector_evolution.fits.py_func(counts, 3, few, largest)
+
+
 def test_a_needle_is_left_to_the_products():
     start = GaussianStart(GaussianLaw((1.0, 0.0), 0.01, 0.0, 1.0), MODEL.potential)
     assert of_gaussian(start, 1e-6) is None

@@ -463,7 +463,7 @@ def test_memory_that_does_not_suffice_is_told():
         spectral_solve(turning, needle, (0.01, 4.0), **limits)
     slow = fp.LayDownModel(fp.QuadraticPotential(), 0.3, fp.MovingBelt(0.3))
     with pytest.raises(ToleranceError, match="raise `memory_limit` or `tolerance`"):
-        spectral_steady_state(slow, memory_limit=10**8)
+        spectral_steady_state(slow, memory_limit=3 * 10**7)
 
 
 @pytest.mark.parametrize("noise", [1e5, 1e59])

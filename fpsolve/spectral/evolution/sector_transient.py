@@ -39,6 +39,8 @@ OF_START = 0.01
 SHARE_OF_ENTROPY = 0.1
 # Rounding of a few hundred terms of size one.
 ROUNDING = 1e-13
+# √n for all degrees that may occur, which no memory holds the sectors of.
+ROOTS = np.sqrt(np.arange(2.0**15))
 # Arrays of one sector alive at a time.
 ARRAYS, BYTES = 6, 16
 
@@ -116,9 +118,8 @@ class Run:
         self.model, self.start, self.stops = model, start, stops
         self.neglected, self.budget, self.work = neglected, budget, work
         self.sigma = quadratic(model).sigma1
-        roots = np.sqrt(np.arange(budget_of_roots(budget)))
         scale = 1.0 / (math.sqrt(2.0) * self.sigma)
-        self.equation = Equation(scale, model.diffusivity, roots)
+        self.equation = Equation(scale, model.diffusivity, ROOTS)
 
     def solution(
         self, first: SectorExpansion, lacking: float, tolerance: float
@@ -225,8 +226,3 @@ class Run:
         for name, value in values.items():
             bounds[name] += ROUNDING * max(1.0, abs(value))
         return values, bounds
-
-
-def budget_of_roots(budget: float) -> int:
-    """Degrees that fit: a sector of degree n with few harmonics is n numbers wide."""
-    return int(min(max(budget / (BYTES * ARRAYS), 64), 20_000))
