@@ -66,8 +66,10 @@ figure = fp.plotting.plot_fibres_in_flow([one.r[-1] for one in laid], air)
 lying = np.concatenate([one.landed for one in laid])
 print(f"{25 * laid[0].fed:.0f} m were spun, {0.005 * len(lying):.1f} m lie on the belt")
 aside = [one.landed[:, 1].std() for one in laid]
-print(f"across the belt: {1e3 * np.mean(aside):.1f} mm, from fibre to fibre "
-      f"{1e3 * np.std(aside):.1f} mm")
+print(
+    f"across the belt: {1e3 * np.mean(aside):.1f} mm, from fibre to fibre "
+    f"{1e3 * np.std(aside):.1f} mm"
+)
 print(f"edges keep their length to {max(one.stretched.max() for one in laid):.0e}")
 
 # %%
