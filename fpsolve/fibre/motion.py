@@ -26,7 +26,7 @@ from fpsolve.fibre.layouts import MOTION
 from fpsolve.fibre.random_force import Draws, StochasticForce, checked_law
 from fpsolve.fibre.shapes import checked_shape, checked_vectors, first_shape
 from fpsolve.fibre.string import String
-from fpsolve.fibre.theta_step import ThetaStep
+from fpsolve.fibre.theta_step import HalvedStep, ThetaStep
 
 __all__ = ["Motion", "simulate"]
 
@@ -58,10 +58,11 @@ class Motion(Saved):
     position_error : float
         Bound of the error of the last positions in m from the length of the steps: the
         distance to those of half as many, three times the error at order 2; with θ > ½,
-        of order 1, twice the distance. Infinite for an odd number of steps, or if not
-        asked for. In turbulence both are driven by the same noise, of which the motion
-        is one answer, and it is twice the distance: white noise leaves order 1 once
-        the swings that it excites are resolved, and less before.
+        of order 1, twice the distance; twice that with a tolerance. Infinite for an odd
+        number of steps, or if not asked for. In turbulence both are driven by the same
+        noise, of which the motion is one answer, and it is twice the distance: white
+        noise leaves order 1 once the swings that it excites are resolved, and less
+        before.
     call : Call or None
         How the result was made.
     provenance : dict
@@ -110,6 +111,7 @@ def simulate(
     air: AirFlow | None = None,
     turbulence: StochasticForce | None = None,
     seed: int | None = None,
+    tolerance: float | None = None,
     save_every: int | None = None,
     estimate_error: bool = True,
 ) -> Motion:
@@ -141,6 +143,10 @@ def simulate(
         A of A·dw_{s,t}, white noise in s and t (Itô) or correlated noise in its place.
     seed : int, optional
         Of `turbulence`: the same seed and step repeat the motion bit by bit.
+    tolerance : float, optional
+        Largest distance in m of the positions after a step and after two of half its
+        length, which are kept; longer steps, and those that are not found, are taken in
+        halves. By default steps are as they are given.
     save_every : int, optional
         Keep positions of every so-many-th step, and of the last; by default of the
         first and the last.
@@ -160,6 +166,8 @@ def simulate(
         If `air` is no `AirFlow`.
     FlowRangeError
         If the fibre leaves the table of the air.
+    ToleranceError
+        If the tolerance is not reached by steps of 1/4096 of the given ones.
     EdgeLengthError
         If Newton's method does not converge, as for steps in which an edge turns
         around.
@@ -192,23 +200,36 @@ def simulate(
         raise TypeError(f"`air` must be an `AirFlow`, got {shown(air)}.")
     step = ThetaStep(string, t_end / n_steps, theta, damping, air)
     draws = _checked_draws(turbulence, seed, step)
-    motion = _motion(step, r, v, n_steps, every, draws)
+    if tolerance is not None:
+        tolerance = check_positive("tolerance", tolerance)
+    motion = _motion(step, r, v, n_steps, every, draws, tolerance)
     if not estimate_error or n_steps % 2:
         return motion
-    half = n_steps // 2
+    half, second = n_steps // 2, theta == 0.5 and draws is None
     step = replace(step, dt=2 * step.dt)
+    bound = 1 if second else 2
+    if tolerance is not None:
+        # Of steps twice as long; these are powers of ½, and their ratio is another.
+        tolerance *= 8 if second else 4
+        bound *= 2
     if draws is not None:
         draws = Draws(draws.law, string, air, step.dt, draws.seed, pieces=2)
-    other = _motion(step, r, v, half, half, draws)
+    other = _motion(step, r, v, half, half, draws, tolerance)
     away = float(np.linalg.norm(other.r[-1] - motion.r[-1], axis=1).max())
-    second = theta == 0.5 and draws is None
-    return replace(motion, position_error=away if second else 2 * away)
+    return replace(motion, position_error=bound * away)
 
 
 def _motion(
-    step: ThetaStep, r: Array, v: Array, n_steps: int, every: int, draws: Draws | None
+    step: ThetaStep,
+    r: Array,
+    v: Array,
+    n_steps: int,
+    every: int,
+    draws: Draws | None,
+    tolerance: float | None,
 ) -> Motion:
     string, forces = step.string, Forces(step.string)
+    advanced = step if tolerance is None else HalvedStep(step, tolerance)
     t: Array = np.arange(n_steps + 1.0) * step.dt
     series = np.zeros((5, n_steps + 1))
     saves = sorted({*range(0, n_steps + 1, every), n_steps})
@@ -220,7 +241,7 @@ def _motion(
             began, force = t[number - 1], None
             if draws is not None:
                 force = draws.value(number, r, v, began)
-            r, v, tension, iterations = step(r, v, tension, began, force)
+            r, v, tension, iterations = advanced(r, v, tension, began, force)
         series[:, number] = (
             0.5 * string.masses @ (v**2).sum(axis=1),
             forces.energy(r),

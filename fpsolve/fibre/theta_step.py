@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -12,10 +12,14 @@ from fpsolve._kernels.chain import Chain, Iterate, Step
 from fpsolve._support.arrays import Array
 from fpsolve.fibre.air import AirFlow
 from fpsolve.fibre.forces import Forces
+from fpsolve.fibre.halving import Halving
 from fpsolve.fibre.newton import Wind, found_step
 from fpsolve.fibre.string import String
 
-__all__ = ["ThetaStep", "string_chain"]
+__all__ = ["HalvedStep", "ThetaStep", "string_chain"]
+
+# r, v and T.
+State = tuple[Array, Array, Array]
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,6 +80,53 @@ class ThetaStep:
         return (
             r + iterate.moved, v + (rate - v) / self.theta, iterate.tension, iterations
         )  # fmt: skip
+
+
+@dataclass(eq=False)
+class HalvedStep:
+    """The step of a `ThetaStep`, in halves where it is not found or not accurate.
+
+    Attributes
+    ----------
+    step : ThetaStep
+    tolerance : float
+        Of the distance of positions after one step and two halves, in m.
+    """
+
+    step: ThetaStep
+    tolerance: float
+    _iterations: int = field(default=0, init=False)
+    _force: Array | None = field(default=None, init=False)
+    _steps: dict[float, ThetaStep] = field(default_factory=dict, init=False)
+
+    def __call__(
+        self, r: Array, v: Array, tension: Array, t: float, force: Array | None = None
+    ) -> tuple[Array, Array, Array, int]:
+        """As of `ThetaStep`; the iterations of all steps that were tried.
+
+        Raises
+        ------
+        EdgeLengthError
+            If a step is not found, however short it is.
+        ToleranceError
+            If the tolerance is not reached by then.
+        """
+        self._iterations, self._force = 0, force
+        halving = Halving(self._stepped, _apart, self.tolerance)
+        r, v, tension = halving((r, v, tension), t, self.step.dt)
+        return r, v, tension, self._iterations
+
+    def _stepped(self, state: State, t: float, dt: float) -> State:
+        if dt not in self._steps:
+            self._steps[dt] = replace(self.step, dt=dt)
+        r, v, tension, iterations = self._steps[dt](*state, t, self._force)
+        self._iterations += iterations
+        return r, v, tension
+
+
+def _apart(before: State, one: State, other: State) -> float:
+    """Largest distance of nodes."""
+    return float(np.linalg.norm(one[0] - other[0], axis=1).max())
 
 
 def string_chain(string: String) -> Chain:

@@ -102,6 +102,33 @@ def test_positions_are_of_the_declared_order_in_the_step(theta, order):
         assert error <= motion.position_error <= 5 * error
 
 
+@pytest.mark.parametrize("theta", [0.5, 0.6])
+def test_a_tolerance_takes_steps_in_halves_until_the_error_has_fallen(theta):
+    exact = soft_fibre_after(3200, theta=theta, estimate_error=False).r[-1]
+    errors = []
+    for tolerance in (1e-4, 1e-5, 1e-6):
+        motion = soft_fibre_after(6, theta=theta, tolerance=tolerance)
+        errors.append(np.linalg.norm(motion.r[-1] - exact, axis=1).max())
+        assert errors[-1] <= motion.position_error < 10 * errors[-1]
+    # Of local errors of order 3 or 2 the powers 2/3 and 1/2: factors of 4.6 and 3.2.
+    factors = np.array(errors[:-1]) / errors[1:]
+    assert (factors > 2).all(), errors
+    assert motion.iterations[1:].max() > 40
+    if theta == 0.5:
+        # Whatever the steps, whose residuals add up.
+        assert np.ptp(motion.energy) < 1e-11 * motion.kinetic.max()
+
+
+def test_a_chain_whips_in_steps_that_are_halved_where_it_turns_around():
+    chain = String(1.0, 1e-3, 1000.0, 0.0, Hinged(NOWHERE), Free(), n_edges=8)
+    level = np.linspace(NOWHERE, [1.0, 0, 0], 9)
+    with pytest.raises(fp.EdgeLengthError):
+        simulate(chain, 1.0, 4, shape=level, estimate_error=False)
+    motion = simulate(chain, 1.0, 4, shape=level, tolerance=1e-3, estimate_error=False)
+    assert motion.stretched.max() <= 1e-12
+    assert np.ptp(motion.energy) < 1e-10 * motion.kinetic.max()
+
+
 def test_a_small_vibration_is_that_of_the_modes():
     rod = cantilever(8, gravity=NOWHERE)
     rest = equilibrium(rod)
@@ -162,6 +189,7 @@ def test_a_fibre_at_rest_stays_there():
         ({"theta": math.nan}, "`theta` must lie between"),
         ({"damping": -1.0}, "`damping` must be non-negative"),
         ({"save_every": 0}, "`save_every` must be"),
+        ({"tolerance": 0.0}, "`tolerance` must be positive"),
         ({"velocity": [1.0, 0.0]}, r"`velocity` must have the shape \(9, 3\) or"),
         ({"velocity": [1.0, 0.0, 0.0]}, "`velocity` must vanish at an end"),
         (
