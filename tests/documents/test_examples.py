@@ -28,7 +28,7 @@ QUICK = ("README.md", "docs/checkpoints.md", "docs/benchmarks.md")
 # Pages that compute for ten seconds and more, once a night.
 LONG = (
     "docs/choosing.md", "docs/design.md", "docs/homogeneity.md", "docs/limits.md",
-    "docs/nozzles.md", "docs/webs.md",
+    "docs/nozzles.md", "docs/string_to_web.md", "docs/webs.md",
 )  # fmt: skip
 
 
