@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-import numpy as np
 import typer
 
 from fpsolve.cli.command import command_line
@@ -87,7 +87,8 @@ def print_lay_down(found: LayDown) -> None:
         ("steps", f"{found.t.size - 1}, {found.iterations[1:].mean():.3g} iterations "
                   f"each, {int(found.rejected.sum())} in halves"),
         ("edges", f"keep their length to {found.stretched.max():.1e}"),
-        ("position error", f"{error:.2g} m" if np.isfinite(error) else "not estimated"),
+        ("position error",
+         f"{error:.2g} m" if math.isfinite(error) else "not estimated"),
     ])  # fmt: skip
 
 

@@ -31,6 +31,6 @@ def known_identification(model):
     return Identification(
         model=model, data=fp.FibreCurve(eta, 0.1, model.curve), method="likelihood",
         parameters=parameters, covariance=spread[:, None] * between * spread,
-        log_likelihood=None, history=np.zeros((0, 3)), k_max=1, h=h,
+        log_likelihood=None, history=np.zeros((0, n)), k_max=1, h=h,
         angle_bands=bands, curvature_bands=bands, p_values=dict.fromkeys(TESTS, 0.5),
     )  # fmt: skip

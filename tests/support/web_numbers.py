@@ -29,7 +29,7 @@ def choose_one_truncation(monkeypatch, degree=6, harmonics=4):
     monkeypatch.setattr(smooth_ladder, "DEGREE", degree)
     monkeypatch.setattr(smooth_ladder, "HARMONICS", harmonics)
 
-    def climb(self, first, compute, allowed, level=0, most=None):
+    def climb(self, first, compute, allowed, level=0, most=None, unseen=None):
         found = compute(self.generator(first))
         return found, np.zeros_like(found), 0
 

@@ -116,7 +116,7 @@ class Kept(BasicFibre):
             self._kept[basis] = found
         return self._kept[basis]
 
-    def climb(self, first, compute, allowed, level=0, most=None):
+    def climb(self, first, compute, allowed, level=0, most=None, unseen=None):
         found = compute(self.generator(first))
         return found, np.zeros_like(found), level
 

@@ -115,6 +115,13 @@ WEB = [
     row("web --out notes.txt", "got `notes.txt`", "`--out` must be a folder"),
     row("web --threads 9999", "got 9999", "must be at most"),
 ]
+STRING = [
+    row("string none.toml", "got `none.toml`", "must be an existing TOML file"),
+    row("string run.toml", "sections are those of", "`fpsolve run`"),
+    row("string --n-steps 0", "got 0", "`n_steps` must be at least 1"),
+    row("string --t-end nan", "got nan", "`t_end` must be"),
+    row("string --out notes.txt", "got `notes.txt`", "`--out` must be a folder"),
+]
 PREDICT = [
     row("design none.toml", "got `none.toml`", "must be an existing TOML file"),
     row("design --front 1", "got 1", "0 or at least 2"),
@@ -252,6 +259,6 @@ COMPARE = [
 ]
 
 MISTAKES = [
-    *RUN, *PATHS, *WEB, *PREDICT, *IDENTIFY, *CHECK, *RATE, *SPECTRUM, *ENERGY,
+    *RUN, *PATHS, *WEB, *STRING, *PREDICT, *IDENTIFY, *CHECK, *RATE, *SPECTRUM, *ENERGY,
     *LIMITS, *PLOT, *RESUME, *REPORT, *RERUN, *COMPARE,
 ]  # fmt: skip
