@@ -88,7 +88,7 @@ def test_both_models_are_compared_in_one_call(fpsolve, table, tmp_path, monkeypa
         "identification-basic.nc", "identification-fibres.png",
         "identification-increments.png", "identification.html", "identification.nc",
     ]  # fmt: skip
-    # 2·3 - 2·12 against 2·3 - 2·10: these results have three parameters each.
+    # 2·4 - 2·12 against 2·3 - 2·10.
     assert "AIC prefers the smooth model." in result.stdout
     assert "-16.00" in result.stdout
     assert "-14.00" in result.stdout
