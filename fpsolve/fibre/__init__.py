@@ -4,6 +4,7 @@ from fpsolve.fibre.air import AirFlow
 from fpsolve.fibre.drag import drag_coefficients, drag_force, drag_resistances
 from fpsolve.fibre.ends import Belt, Clamped, Free, Hinged, Nozzle
 from fpsolve.fibre.laid import LayDown
+from fpsolve.fibre.lay_all import lay_down_all
 from fpsolve.fibre.laying import lay_down
 from fpsolve.fibre.motion import Motion, simulate
 from fpsolve.fibre.random_force import RandomForce
@@ -33,6 +34,7 @@ __all__ = [
     "drag_resistances",
     "equilibrium",
     "lay_down",
+    "lay_down_all",
     "modes",
     "simulate",
 ]
