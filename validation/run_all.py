@@ -62,6 +62,8 @@ SCRIPTS = (
 # claims that tests hold as well, on other models, shorter arclengths or fewer paths.
 NIGHTLY = {
     "entropy_identity.py": "tests/density/test_invariants.py",
+    "smooth_path_orders.py": "tests/paths/test_smooth_paths.py",
+    "stationary_boxes.py": "tests/density/test_steady_state.py",
     "path_bias.py": "tests/paths/test_path_accuracy.py",
     "ergodic_averages.py": "tests/studies/test_ergodicity.py",
     "web_prediction.py": "tests/web/test_predict_web.py",

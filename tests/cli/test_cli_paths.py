@@ -292,6 +292,7 @@ def test_help_shows_a_working_example(fpsolve, command):
 
 
 @pytest.mark.processes
+@pytest.mark.nightly
 def test_a_signal_stops_the_sampling_and_keeps_what_is_done(config, tmp_path):
     at = "save_at = [0.0, 0.125, 0.5, 1.0]"
     config.write_text(CONFIG.replace("save_every = 0.5", at))

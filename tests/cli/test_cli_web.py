@@ -248,6 +248,7 @@ def test_an_interrupt_leaves_no_file(fpsolve, config, tmp_path, monkeypatch):
 
 
 @pytest.mark.processes
+@pytest.mark.nightly
 def test_a_signal_stops_the_laying_and_leaves_no_file(config, tmp_path):
     process = command_waiting_at(1, "web", config, cwd=tmp_path)
     process.send_signal(signal.SIGINT)

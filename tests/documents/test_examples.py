@@ -25,9 +25,10 @@ TEST_COMMAND = (
 
 # Pages that compute little; the others are left to the step that builds the pages.
 QUICK = ("README.md", "docs/checkpoints.md", "docs/benchmarks.md")
-# Pages that compute for ten seconds and more, once a night.
+# Pages that compute for four seconds and more, once a night.
 LONG = (
     "docs/choosing.md", "docs/design.md", "docs/homogeneity.md", "docs/limits.md",
+    "docs/misprints.md", "docs/pypde.md", "docs/rates.md", "docs/smooth.md",
     "docs/nozzles.md", "docs/string_to_web.md", "docs/webs.md",
 )  # fmt: skip
 

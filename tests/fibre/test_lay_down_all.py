@@ -52,6 +52,7 @@ def test_fibres_of_an_executor_are_those_laid_here(single):
 
 
 @pytest.mark.processes
+@pytest.mark.nightly
 def test_fibres_of_spawned_processes_are_those_laid_here(single):
     with ProcessPoolExecutor(2, get_context("spawn")) as executor:
         same(all_laid(client=executor), single)

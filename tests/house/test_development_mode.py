@@ -8,7 +8,7 @@ import pytest
 from command_line import COMPILING, HANGS
 
 
-# Pages and tests that start processes are in this mode on every push, all every night.
+# Tests that start processes are in this mode on every push, all others every night.
 @pytest.mark.nightly
 def test_the_example_leaves_nothing_unclosed_and_nothing_deprecated(tmp_path):
     # Development mode tells of files and processes that were not closed; every warning,

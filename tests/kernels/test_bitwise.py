@@ -57,6 +57,7 @@ def test_two_threads_give_the_bits_of_one(name, on_threads):
 
 
 @pytest.mark.processes
+@pytest.mark.nightly
 def test_threads_of_blas_and_the_limit_of_numba_change_no_bit():
     # Without the limit of one thread the spectrum of the energy process differs.
     assert in_another_process(1, 2) == {name: in_this_process(name) for name in CASES}

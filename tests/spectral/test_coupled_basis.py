@@ -27,7 +27,8 @@ def on_grid(values, sector):
     return [values(row, sector, SMALL, GRID) for row in np.eye(size)]
 
 
-@pytest.mark.parametrize("sector", [EVEN, pytest.param(ODD, marks=pytest.mark.nightly)])
+@pytest.mark.nightly
+@pytest.mark.parametrize("sector", [EVEN, ODD])
 def test_the_matrix_is_the_generator_by_quadrature_of_its_definition(sector):
     matrix = BASIS.matrix(sector, *SMALL).toarray()
     observables = on_grid(BASIS.values, sector)

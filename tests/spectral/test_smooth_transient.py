@@ -179,6 +179,7 @@ def test_short_relaxation_gives_the_basic_model_to_first_order():
     assert np.all(np.abs(orders - 1.0) < 0.15), orders
 
 
+@pytest.mark.nightly
 def test_what_is_stationary_is_reached():
     """Var ξ₁ = 1.1177619 for R = 0.1, A = 1 (a three-dimensional Galerkin method in
     the frame of the fibre), E κ² = K²R/2 + 1 exactly; e^{−gap s} is 1e-6 at s = 50.

@@ -315,6 +315,7 @@ def test_progress_counts_the_cases(tmp_path, capsys):
 
 
 @pytest.mark.processes
+@pytest.mark.nightly
 def test_a_script_without_a_guard_is_not_run_again(tmp_path):
     found = run_script(tmp_path, """
         print("here", flush=True)

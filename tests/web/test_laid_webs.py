@@ -152,7 +152,9 @@ def test_a_web_is_the_same_for_any_number_of_threads_and_workers(name, monkeypat
 
 
 @pytest.mark.processes
-@pytest.mark.parametrize("name", ["basic", "oscillating"])
+@pytest.mark.parametrize(
+    "name", ["basic", pytest.param("oscillating", marks=pytest.mark.nightly)]
+)
 def test_a_web_of_spawned_processes_is_the_one_laid_here(name, monkeypatch):
     monkeypatch.setattr("fpsolve.web.laying._ELSEWHERE", 50)
     options = SMALL | {"spacing": 0.1}

@@ -157,7 +157,9 @@ def remembering(generator, shape, length):
     return 1 + field[:, -shape[1] :]
 
 
-@pytest.mark.parametrize(("length", "n_webs"), [(2.0, 200), (5.0, 200), (48.0, 50)])
+@pytest.mark.parametrize(("length", "n_webs"), [
+    (2.0, 200), pytest.param(5.0, 200, marks=pytest.mark.nightly), (48.0, 50)
+])  # fmt: skip
 def test_webs_that_remember_for_long_are_not_called_striped(length, n_webs):
     generator = np.random.default_rng(10)
     webs = [remembering(generator, (48, 96), length) for _ in range(n_webs)]
