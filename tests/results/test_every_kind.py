@@ -292,7 +292,17 @@ def test_a_study_is_loaded_from_a_store_bit_for_bit(name, tmp_path):
     assert_same(name, fp.load(saved(result(name), tmp_path / "result.zarr")))
 
 
-@pytest.mark.parametrize("name", MAKERS)
+# What takes seconds to compute is repeated at night; others of its sort are here.
+DEAR = {
+    "rate", "spectrum, smooth", "steady-state, smooth", "web-homogeneity",
+    "web-prediction",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", [
+    pytest.param(name, marks=[pytest.mark.nightly] if name in DEAR else [])
+    for name in MAKERS
+])  # fmt: skip
 def test_a_result_is_repeated_from_its_file_to_the_last_bit(name):
     # One of the studies is repeated in processes, as all would be without this.
     in_process = KINDS[name.partition(",")[0]].counts == "cases" and name != "rate"

@@ -35,6 +35,7 @@ BELTS = [
 ]
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize(("model", "tolerance"), CASES)
 def test_errors_cover_what_the_next_truncation_changes(model, tolerance):
     """Against one of 1.3 times the degree, whose own error is several times less."""
