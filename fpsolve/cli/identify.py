@@ -39,7 +39,8 @@ Curve = Annotated[
     typer.Argument(
         metavar="CURVE.csv",
         help="Points along the fibre, columns eta1, eta2 (or x, y), perhaps s and "
-        "fibre; without it the packaged fibre.",
+        "fibre, or the curve that `fpsolve string` leaves; without it the packaged "
+        "fibre.",
     ),
 ]
 BeltSpeed = Annotated[

@@ -14,6 +14,8 @@ if TYPE_CHECKING:
 
 __all__ = ["Measured", "measured_fibre"]
 
+# Files of results, which have units and a reference curve.
+SAVED = (".nc", ".zarr")
 # Spread about the reference curve in metres, beyond which no process throws fibres.
 _SPREADS = (1e-4, 0.5)
 
@@ -46,6 +48,8 @@ def measured_fibre(given: Measured) -> FibreCurve:
     from fpsolve._support.checks import check_one_of
     from fpsolve.paths.fibres.fibre_curve import FibreCurve
 
+    if given.table is not None and given.table.suffix in SAVED:
+        return _saved(given.table, given)
     given = _completed(given)
     check_one_of("--unit", given.unit, UNITS)
     curve = _curve(given)
@@ -57,6 +61,33 @@ def measured_fibre(given: Measured) -> FibreCurve:
         fibre = _fitted(fibre, given)
     _check_spread(fibre, given)
     return fibre
+
+
+def _saved(path: Path, given: Measured) -> FibreCurve:
+    """A curve that was saved with its reference curve, as `fpsolve string` does."""
+    from fpsolve.paths.fibres.fibre_curve import FibreCurve
+    from fpsolve.results.load import load
+
+    found = load(path)
+    if not isinstance(found, FibreCurve):
+        raise ValueError(
+            f"`CURVE` must be a table or a saved fibre curve, got `{path}`, which "
+            f"holds a {type(found).__name__}."
+        )
+    if found.curve is None:
+        raise ValueError(
+            f"`CURVE` must be saved with its reference curve, got `{path}` without; "
+            "write its points to a table and give `--belt-speed`."
+        )
+    names = ("belt_speed", "ds", "position_error", "nozzle", "angular_speed", "radius",
+             "phase")  # fmt: skip
+    told = [name for name in names if getattr(given, name) is not None]
+    if told:
+        raise ValueError(
+            f"`--{told[0].replace('_', '-')}` must not be given beside a saved curve, "
+            f"got {getattr(given, told[0])}; `{path}` says it."
+        )
+    return found
 
 
 def _completed(given: Measured) -> Measured:

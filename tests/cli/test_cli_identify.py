@@ -260,3 +260,27 @@ def test_errors_of_parameters_are_carried_to_a_prediction(
     assert "of the parameters" in result.stdout
     assert "0.002 m" in result.stdout
     assert predicted.spacing == 5e-3
+
+
+def test_a_curve_that_was_saved_is_identified_with_its_own_reference(
+    fpsolve, tmp_path, monkeypatch
+):
+    seen = []
+
+    def identify(fibre, *, model, method, seed):
+        seen.append(fibre)
+        return known_identification(MODEL)
+
+    place = module("fpsolve.studies.identification.identify")
+    monkeypatch.setattr(place, "identify", identify)
+    angle = 0.1 * np.arange(9)
+    eta = 0.05 * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+    curve = fp.FibreCurve(eta, 0.005, fp.MovingBelt(0.1), position_error=1e-5)
+    path = curve.save(tmp_path / "curve.nc")
+    words = ("identify", path, "--model", "basic", "--no-figures", "--out", "out")
+    assert fpsolve(*words).exit_code == 0
+    assert fp.compare(seen[0], curve).equal
+    said = "`--belt-speed` must not be given beside a saved curve, got 0.2"
+    assert_mistake(fpsolve(*words, "--belt-speed", 0.2), said)
+    bare = fp.FibreCurve(eta, 0.005).save(tmp_path / "bare.nc")
+    assert_mistake(fpsolve("identify", bare), "saved with its reference curve, got")
