@@ -25,12 +25,12 @@ class Keeper:
 
     Attributes
     ----------
-    path : Path or None
+    path : Path
     call : Call
         Of which the run is.
     """
 
-    path: Path | None
+    path: Path
     call: Call
     _written: float = field(default_factory=time.monotonic, init=False)
 
@@ -44,7 +44,7 @@ class Keeper:
         FileFormatError
             If it is no run, or damaged.
         """
-        if self.path is None or not self.path.exists():
+        if not self.path.exists():
             return None
         dataset = read_dataset(self.path)
         with reported_damage(self.path, Exception):
@@ -60,18 +60,16 @@ class Keeper:
 
     def due(self) -> bool:
         """Whether the last time is long ago."""
-        return self.path is not None and time.monotonic() - self._written >= BETWEEN
+        return time.monotonic() - self._written >= BETWEEN
 
     def keep(self, part: LayDown) -> None:
         """Write what there is, in the place of what was."""
-        if self.path is not None:
-            replace(part, call=self.call).save(self.path)
-            self._written = time.monotonic()
+        replace(part, call=self.call).save(self.path)
+        self._written = time.monotonic()
 
     def remove(self) -> None:
         """Remove the file of a run that is at its end."""
-        if self.path is not None:
-            self.path.unlink(missing_ok=True)
+        self.path.unlink(missing_ok=True)
 
 
 def same_call(one: Call, other: Call) -> bool:

@@ -145,7 +145,7 @@ def lay_down(
     ----------
     [KMW09]_, section 2.2.
     """
-    call = Call.of("lay_down", locals())
+    given = dict(locals())
     t_end = check_positive("t_end", t_end)
     n_steps = check_integer("n_steps", n_steps, 1)
     every = n_steps
@@ -161,9 +161,11 @@ def lay_down(
     if tolerance is not None:
         allowed = check_positive("tolerance", tolerance)
     t = np.linspace(0.0, t_end, n_steps + 1)
-    path = None if checkpoint is None else check_path("checkpoint", checkpoint)
-    keeper = Keeper(path, call)
-    part = keeper.found()
+    keeper = part = None
+    if checkpoint is not None:
+        path = check_path("checkpoint", checkpoint)
+        keeper = Keeper(path, Call.of("lay_down", given))
+        part = keeper.found()
     record = Record.first(t, first) if part is None else Record.of(part, t, every)
     with reporting(progress) as report:
         found = LayRun(step, every, allowed, draws).result(record, report, keeper)
@@ -178,7 +180,8 @@ def lay_down(
         other = run.result(half, lambda *_: None)
         safe = SAFE if tolerance is None else SAFE_OF_HALVES
         found = replace(found, position_error=safe * found.distance(other))
-    keeper.remove()
+    if keeper is not None:
+        keeper.remove()
     return found
 
 
