@@ -43,7 +43,7 @@ def plot_nozzle_design(design: NozzleDesign) -> Figure:
     check_kind("design", design, NozzleDesign, "it is what `design_nozzles` returns")
     told = f"d = {design.spacing:g}"
     if design.model is not None:
-        told = f"{parameters(design.model)}, {told}"
+        told = f"{parameters(design)}, {told}"
     with drawing(COLUMN, 2.8, told) as figure:
         axes = figure.subplots()
         (_curves if len(design.names) == 1 else _map)(axes, design)

@@ -139,6 +139,7 @@ def test_a_design_of_two_numbers_is_drawn(known, tmp_path):
     design = known(lambda curve: 0.1 + curve.radius2, bounds, n_scan=3)
     figure = plotting.plot_nozzle_design(design)
     assert "radius" not in repr(figure.axes[0].get_xlabel())
+    assert f"A = {design.model.noise:g}" in figure.get_suptitle()
     design.save(tmp_path / "nozzles.nc")
     again = fp.load(tmp_path / "nozzles.nc")
     assert again.names == design.names
