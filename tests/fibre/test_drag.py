@@ -55,7 +55,7 @@ def test_drag_is_that_of_computed_flows_to_five_per_cent(reynolds, drag):
 
 
 def measured(reynolds):
-    """Drag of cylinders in wind tunnels and tanks: the curve drawn through it [Whi91]."""
+    """Measured drag of cylinders: the curve drawn through it in [Whi91]."""
     creeping = 6.8 / reynolds**0.89 + 1.96 / np.sqrt(reynolds)
     return creeping + 1.18 - 4e-4 * reynolds / (1 + 3.64e-7 * reynolds**2)
 
@@ -64,7 +64,7 @@ def test_drag_is_that_of_measured_cylinders_to_twelve_per_cent():
     reynolds = np.geomspace(0.1, 400, 61)
     normal, _ = drag_coefficients(reynolds)
     off = 2 * normal / measured(reynolds) - 1
-    # 11.1 % at 2.5, where computed flows are on our side (the test above) and
+    # 11.4 % at 2.8, where computed flows are on our side (the test above) and
     # measurements scatter by 10 %; 3.5 % at the ends.
     assert np.abs(off).max() < 0.12
     assert np.abs(off[[0, -1]]).max() < 0.04
