@@ -44,6 +44,13 @@ def plot_fibre_curve(fibre: FibreCurve, k: int = 0) -> Figure:
             figure.legend(loc="outside lower right", ncols=2)
         axes.set_aspect("equal")
         axes.set(xlabel=r"$\eta_1$", ylabel=r"$\eta_2$")
-        axes.set_title(rf"length {len(eta) * fibre.ds:.4g} of {fibre.length:.4g}")
+        axes.set_title(length_shown(s[-1] - s[0], fibre.length))
         show_frame(axes)
     return figure
+
+
+def length_shown(shown: float, whole: float) -> str:
+    """How long the drawn part is, and all pieces where these are more than it."""
+    if np.isclose(shown, whole, rtol=1e-9):
+        return f"length {whole:.4g}"
+    return f"length {shown:.4g} of {whole:.4g}"
