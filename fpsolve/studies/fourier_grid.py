@@ -18,12 +18,12 @@ from fpsolve.density.suggestions import check_tolerance, suggest_step
 from fpsolve.density.unresolved import unresolved_by_axis
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.model.laydown import LayDownModel, check_model
-from fpsolve.studies.suggested_grid import (
+from fpsolve.studies.explained_grid import (
     BOX_SHARE,
-    LARGEST_LOSS,
     SuggestedGrid,
     box_half_widths,
     check_normalisable,
+    share_outside,
 )
 
 __all__ = ["suggest_fourier_grid"]
@@ -88,7 +88,7 @@ def suggest_fourier_grid(
             f"`s_end` must be positive and finite, got {s_end:g}; it is the length of "
             "the run."
         )
-    lost = min(BOX_SHARE * tolerance, LARGEST_LOSS)
+    lost = share_outside(tolerance)
     half1, half2 = box_half_widths(model.potential, lost)
     grid = PhaseSpaceGrid((half1, half2), FIRST_SHAPE)
     while True:

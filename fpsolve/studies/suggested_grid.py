@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from collections.abc import Callable
+from typing import Any, cast
 
 import numpy as np
 
+from fpsolve._support.arrays import Array
 from fpsolve.density.error_laws import (
     INTERPOLATION_COEFFICIENT,
     KINK_COEFFICIENT,
@@ -18,47 +20,32 @@ from fpsolve.density.error_laws import (
     unit_of_nodes,
 )  # fmt: skip
 from fpsolve.density.suggestions import check_tolerance
+from fpsolve.grids.initial import equilibrium, gaussian
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 from fpsolve.grids.smooth import SmoothPhaseSpaceGrid
 from fpsolve.model.fibre import FibreModel, check_fibre_model
+from fpsolve.model.laydown import LayDownModel, check_model
 from fpsolve.model.potentials.nodes import GibbsNodes, gibbs_nodes
 from fpsolve.model.potentials.potential import Potential
 from fpsolve.model.smooth import SmoothLayDownModel
+from fpsolve.paths.laws import EquilibriumLaw, GaussianLaw
 from fpsolve.studies.boxes import box_for_travel, rounded_up
+from fpsolve.studies.explained_grid import (
+    SuggestedGrid,
+    check_normalisable,
+    share_outside,
+)
+from fpsolve.studies.fourier_grid import suggest_fourier_grid
 
-__all__ = ["SuggestedGrid", "SuggestedSmoothGrid", "box_half_widths", "suggest_grid"]
+__all__ = ["SuggestedSmoothGrid", "suggest_grid"]
 
-# Share of the tolerance spent on what the box cuts off; never so much that the
-# boundary mass would stop a run at its default tolerance of 1e-3.
-BOX_SHARE = 0.1
-LARGEST_LOSS = 5e-5
 # Sizes of the pattern within which the force has to balance the belt.
 WIDEST = 1e3
 # Half width of the curvature in its deviations √E κ², and cells in κ over √(A²/2R).
 DEVIATIONS, CURVATURE_CELL = 6.0, 0.6
+TRANSLATIONS = ("lagrange", "fourier")
 # Cells beyond any machine: 32 GiB for one density.
 MOST_CELLS = 2.0**32
-
-
-class SuggestedGrid(PhaseSpaceGrid):
-    """A grid that knows why: a PhaseSpaceGrid with a `reason`.
-
-    Attributes
-    ----------
-    reason : str
-        What set the box and each number of cells.
-    """
-
-    reason: str
-
-    @classmethod
-    def because(
-        cls, half_width: tuple[float, float], shape: tuple[int, int, int], reason: str
-    ) -> SuggestedGrid:
-        """The grid with its reason."""
-        grid = cls(half_width, shape)
-        object.__setattr__(grid, "reason", reason)
-        return grid
 
 
 class SuggestedSmoothGrid(SmoothPhaseSpaceGrid):
@@ -97,8 +84,9 @@ def suggest_grid(
     *,
     initial: Any = None,
     s_end: float | None = None,
+    translation: str = "lagrange",
 ) -> SuggestedGrid | SuggestedSmoothGrid:
-    """Box and cells for an L1 error of about `tolerance`, from the measured laws.
+    """Box and cells for an L1 error of about `tolerance`, by measured laws or trials.
 
     The box holds all but a tenth of the tolerance (5e-5 at most) of e^{−B}, all wells
     of it. Where the belt or a nozzle moves, or the start is given, it also holds 8192
@@ -108,16 +96,22 @@ def suggest_grid(
     interpolation; a narrower start needs more. Cells and angles grow as the noise
     falls.
 
+    With ``translation="fourier"`` no law with one exponent says how many cells are
+    enough: trial runs of the start do, see `suggest_fourier_grid`.
+
     Parameters
     ----------
     model : LayDownModel or SmoothLayDownModel
         Its e^{−B} must be normalisable.
     tolerance : float
-    initial : law, optional
-        Law of the start from `fpsolve.paths`; e^{−B}/Z by default.
+    initial : law, or with Fourier translations a callable, optional
+        Law of the start from `fpsolve.paths`, e^{−B}/Z by default; or
+        ``initial(grid)``, the start on any grid.
     s_end : float, optional
         Length of the run from the start of the curve; by default long enough for the
-        law to settle.
+        law to settle. Fourier translations need one.
+    translation : {"lagrange", "fourier"}
+        How the scheme will translate.
 
     Returns
     -------
@@ -129,12 +123,22 @@ def suggest_grid(
     ValueError
         If the tolerance is not in (0, 1), the potential does not confine, or no box of
         a reasonable size holds the law: paths spread without end, e^{−B} falls like a
-        power, or its wells are tiny for their distance.
+        power, or its wells are tiny for their distance. For Fourier translations also
+        if the start is too sharp.
+    TypeError
+        If the start is neither a law nor a callable, or Fourier translations are asked
+        for a smooth model.
     """
     check_fibre_model(model)
+    if translation not in TRANSLATIONS:
+        raise ValueError(
+            f'`translation` must be "lagrange" or "fourier", got {translation!r}.'
+        )
+    if translation == "fourier":
+        return grid_by_trials(model, tolerance, initial, s_end)
     check_tolerance(tolerance)
     check_normalisable(model)
-    lost = min(BOX_SHARE * tolerance, LARGEST_LOSS)
+    lost = share_outside(tolerance)
     nodes = gibbs_nodes(model.potential)
     smooth = isinstance(model, SmoothLayDownModel)
     if smooth and not model.noise > 0:
@@ -172,13 +176,36 @@ def suggest_grid(
     return grid
 
 
-def check_normalisable(model: FibreModel) -> None:
-    """Raise unless e^{−B} has a mass that a box can hold."""
-    if not model.potential.normalisable:
+def grid_by_trials(
+    model: FibreModel, tolerance: float, initial: Any, s_end: float | None
+) -> SuggestedGrid:
+    """The grid for Fourier translations of a start that a law or a callable says."""
+    check_model(model)
+    basic = cast(LayDownModel, model)
+    if s_end is None:
         raise ValueError(
-            f"`potential` must confine, got {model.potential!r}; without a "
-            "normalisable exp(-B) no box is large enough, choose one by hand."
+            "`s_end` must be given for Fourier translations, got none: the cells are "
+            "chosen by trial runs of that length."
         )
+    start = starter(initial, basic.potential)
+    return suggest_fourier_grid(basic, start, s_end, tolerance)
+
+
+def starter(initial: Any, potential: Potential) -> Callable[[PhaseSpaceGrid], Array]:
+    """A callable that puts a start on any grid."""
+    if initial is None or isinstance(initial, EquilibriumLaw):
+        target = potential if initial is None else initial.potential
+        return lambda grid: equilibrium(grid, target)
+    if isinstance(initial, GaussianLaw):
+        return lambda grid: gaussian(
+            grid, initial.mean, initial.variance, initial.angle, initial.concentration
+        )
+    if not callable(initial):
+        raise TypeError(
+            "`initial` must be a GaussianLaw, an EquilibriumLaw or a function of the "
+            f"grid for Fourier translations, got {type(initial).__name__}."
+        )
+    return cast(Callable[[PhaseSpaceGrid], Array], initial)
 
 
 def box_of(
@@ -222,11 +249,6 @@ def check_size(
             f"{half_widths[1]:g}: {n1} x {n2} x {n_alpha} cells; move the minimum of B "
             "to the origin, or choose a grid by hand."
         )
-
-
-def box_half_widths(potential: Potential, lost: float) -> tuple[float, float]:
-    """Half widths outside which e^{−B} has the share `lost`, direction by direction."""
-    return gibbs_nodes(potential).half_widths(lost)
 
 
 def belt_shift(model: FibreModel) -> float:

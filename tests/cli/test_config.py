@@ -136,6 +136,26 @@ def test_a_missing_grid_and_step_are_suggested_with_their_reason():
     assert again.arguments["ds"] == ds
 
 
+def test_a_missing_grid_suits_the_translations_of_the_scheme():
+    start, end = TEXT.index("[grid]"), TEXT.index("[initial]")
+    text = (TEXT[:start] + TEXT[end:]).replace(
+        'kind = "drift_kick"', 'kind = "drift_kick"\ntranslation = "fourier"'
+    )
+    text = text.replace("s_end = 1.0", "s_end = 0.25").replace(
+        "ds = 0.25", "ds = 0.125"
+    )
+    text = text.replace("save_at = [0.5, 1.0]\n", "tolerance = 0.1\n")
+    problem = read_config(text).build()
+    tried = fp.suggest_fourier_grid(
+        problem.model,
+        lambda grid: fp.initial.gaussian(grid, (0.5, 0.0)),
+        0.25,
+        0.1,
+    )
+    assert problem.grid == tried
+    assert "the shortest waves hold" in problem.grid.reason
+
+
 def test_levels_and_the_translation_are_said_in_a_configuration():
     text = TEXT.replace("s_end = 1.0", "s_end = 1.0\nextrapolate = 4")
     problem = read_config(text).build()

@@ -8,7 +8,7 @@ from problems import DecayingCirculation
 
 import fpsolve as fp
 from fpsolve.grids.diagnostics import l1_distance
-from fpsolve.studies import fourier_grid
+from fpsolve.studies import fourier_grid, suggested_grid
 
 MODEL = fp.LayDownModel(fp.QuadraticPotential(), 1.0)
 
@@ -79,3 +79,36 @@ def test_a_potential_that_does_not_confine_has_no_box():
     free = fp.LayDownModel(fp.FreePotential(), 1.0)
     with pytest.raises(ValueError, match="`potential` must confine"):
         fp.suggest_fourier_grid(free, narrow, 1.0)
+
+
+def test_suggest_grid_tries_the_start_that_a_law_or_nothing_says(monkeypatch):
+    tried = []
+    monkeypatch.setattr(
+        suggested_grid,
+        "suggest_fourier_grid",
+        lambda model, start, s_end, tolerance: tried.append((start, s_end, tolerance)),
+    )
+    potential, law = MODEL.potential, fp.paths.GaussianLaw((0.5, 0.0), 0.5, 0.3, 1.0)
+    for initial in (law, narrow, None, fp.paths.EquilibriumLaw(potential)):
+        fp.suggest_grid(MODEL, 1e-4, initial=initial, s_end=0.25, translation="fourier")
+    grid = fp.PhaseSpaceGrid(4.0, (12, 12, 8))
+    rest = fp.initial.equilibrium(grid, potential)
+    expected = (narrow(grid), narrow(grid), rest, rest)
+    for (start, s_end, tolerance), p in zip(tried, expected, strict=True):
+        assert (s_end, tolerance) == (0.25, 1e-4)
+        np.testing.assert_array_equal(start(grid), p)
+
+
+def test_a_grid_for_fourier_translations_needs_a_length_and_a_start():
+    def suggested(**arguments):
+        return fp.suggest_grid(MODEL, 1e-2, **arguments)
+
+    with pytest.raises(ValueError, match="`s_end` must be given for Fourier"):
+        suggested(translation="fourier")
+    with pytest.raises(TypeError, match="`initial` must be a GaussianLaw, an Equi"):
+        suggested(translation="fourier", initial=0.5, s_end=1.0)
+    with pytest.raises(ValueError, match=r'`translation` must be "lagrange" or "four'):
+        suggested(translation="spline")
+    smooth = fp.SmoothLayDownModel(MODEL.potential, 0.5, 1.0)
+    with pytest.raises(TypeError, match="`model` must be"):
+        fp.suggest_grid(smooth, 1e-2, s_end=1.0, translation="fourier")

@@ -45,7 +45,8 @@ class RunConfig(Description):
     """A whole run: `potential`, `model` and `curve`, or `process`; then how to solve.
 
     Without a grid or a step they are chosen by `suggest_grid` and `suggest_step` for
-    the tolerance of the run; their `reason` says why.
+    the tolerance of the run, the grid for the translations of the scheme; their
+    `reason` says why.
     """
 
     grid: GridSection | None = None
@@ -100,8 +101,9 @@ class RunConfig(Description):
         if self.grid is not None:
             return self.grid.make()
         return suggest_grid(
-            model, self.run.tolerance, initial=self._law(), s_end=self.run.s_end
-        )
+            model, self.run.tolerance, initial=self._law(), s_end=self.run.s_end,
+            translation=getattr(self.scheme, "translation", "lagrange"),
+        )  # fmt: skip
 
     def _start(self, model: Any, grid: Any) -> Array:
         """The initial density; of a smooth fibre with the curvature of a free one."""

@@ -28,11 +28,11 @@ from fpsolve.reduced.hydrodynamic.limit import HydrodynamicLimit
 from fpsolve.spectral.eigen.gap import spectral_gap
 from fpsolve.spectral.evolution.steady import spectral_steady_state
 from fpsolve.studies.constants.poincare import next_gap_term, poincare_constant
+from fpsolve.studies.explained_grid import box_half_widths
 from fpsolve.studies.limits.balance import balanced_force
 from fpsolve.studies.limits.distances import distances
 from fpsolve.studies.limits.plane_limit import stationary_limit, transient_limit
 from fpsolve.studies.limits.smooth_runs import curved_grid, smooth_marginal
-from fpsolve.studies.suggested_grid import box_half_widths
 
 __all__ = ["PARTS", "Resolution", "deviation_of", "large_noise_case", "resolution_for"]
 
