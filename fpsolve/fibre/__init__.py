@@ -6,9 +6,10 @@ from fpsolve.fibre.ends import Belt, Clamped, Free, Hinged, Nozzle
 from fpsolve.fibre.laid import LayDown
 from fpsolve.fibre.lay_all import lay_down_all
 from fpsolve.fibre.laying import lay_down
-from fpsolve.fibre.motion import Motion, simulate
+from fpsolve.fibre.motion import Motion
 from fpsolve.fibre.random_force import RandomForce
 from fpsolve.fibre.rest import Equilibrium, equilibrium
+from fpsolve.fibre.simulating import simulate
 from fpsolve.fibre.string import String
 from fpsolve.fibre.turbulence import TurbulenceSpectrum
 from fpsolve.fibre.turbulent_force import TurbulentForce

@@ -13,6 +13,7 @@ from fpsolve._kernels.chain import Chain, Iterate, Step
 from fpsolve._kernels.impact import arrest
 from fpsolve._support.arrays import Array
 from fpsolve.fibre.air import AirFlow
+from fpsolve.fibre.end_tensions import nozzle_tension
 from fpsolve.fibre.ends import Belt, Nozzle
 from fpsolve.fibre.newton import Wind, found_step
 from fpsolve.fibre.string import FEWEST_EDGES, String
@@ -184,6 +185,16 @@ class FedStep:
         v[chain.laid] = chain.v[chain.laid]
         new = replace(chain, r=chain.r + moved, v=v, tension=iterate.tension)
         return self._landed(new, fixed[:, 2], t + dt), iterations
+
+    def nozzle_tension(
+        self, chain: FedChain, new: FedChain, t: float, dt: float
+    ) -> float:
+        """T in N where the fibre leaves the nozzle, θ of the step after its begin."""
+        n, theta, h = chain.tension.size, self.theta, self.string.edge
+        out = self.nozzle.speed * (t + theta * dt)
+        out -= h * (chain.newest - self.string.n_edges)
+        middle = chain.r + theta * (new.r - chain.r)
+        return nozzle_tension(self.string, self.numbers(n), middle, new.tension, out)
 
     def _carry(self, chain: FedChain, t: float, moved: Array) -> None:
         """Displacements of what lies on the belt."""

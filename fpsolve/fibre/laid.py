@@ -38,6 +38,10 @@ class LayDown(Saved):
         Energy of motion in the air, in J.
     largest_tension : ndarray, shape (n_steps + 1,)
         Largest |T| in N of the step that ends there; 0 before the first.
+    nozzle_tension : ndarray, shape (n_steps + 1,)
+        T in N where the fibre leaves the nozzle, θ of the step before its end, or of
+        the last of its parts; 0 before the first. Nodes that come and land one by one
+        make it scatter, nearly at order 1 in the edges: take means over many nodes.
     stretched : ndarray, shape (n_steps + 1,)
         Largest relative deviation of an edge from its length.
     free_length : ndarray, shape (n_steps + 1,)
@@ -78,6 +82,7 @@ class LayDown(Saved):
     t: Array
     kinetic: Array
     largest_tension: Array
+    nozzle_tension: Array
     stretched: Array
     free_length: Array
     iterations: NDArray[np.int64]

@@ -26,7 +26,7 @@ class Record:
     Attributes
     ----------
     t : ndarray, shape (n_steps + 1,)
-    series : ndarray, shape (6, n_steps + 1)
+    series : ndarray, shape (7, n_steps + 1)
         As `LayDown` has them, the two numbers of iterations and rejections last.
     chain : FedChain
     behind : list of ndarray, shape (n, 3)
@@ -48,17 +48,17 @@ class Record:
     @classmethod
     def first(cls, t: Array, chain: FedChain) -> Record:
         """Before any step."""
-        return cls(t, np.zeros((6, t.size)), chain, [], [chain.r], [0])
+        return cls(t, np.zeros((7, t.size)), chain, [], [chain.r], [0])
 
     @classmethod
     def of(cls, part: LayDown, t: Array, every: int) -> Record:
         """As it was when the run was left, bit by bit."""
         done, chain = part.t.size - 1, part.last
         found = (
-            part.kinetic, part.largest_tension, part.stretched, part.free_length,
-            part.iterations, part.rejected,
+            part.kinetic, part.largest_tension, part.nozzle_tension, part.stretched,
+            part.free_length, part.iterations, part.rejected,
         )  # fmt: skip
-        series = np.zeros((6, t.size))
+        series = np.zeros((7, t.size))
         series[:, : done + 1] = np.array(found)
         lying = len(part.landed) - len(chain.lying)
         landed = np.column_stack([part.landed, part.landing_times])[:lying]
@@ -75,14 +75,14 @@ class Record:
             shapes.append(self.chain.r)
             saved.append(self.done)
         landed = np.concatenate([*self.behind, self.chain.lying])
-        kinetic, tension, stretched, free, iterations, rejected = self.series[
+        kinetic, tension, nozzle, stretched, free, iterations, rejected = self.series[
             :, : self.done + 1
         ]
         counted = np.array([iterations, rejected], dtype=np.int64)
         return LayDown(
             step.string, step.belt, self.t[: self.done + 1], kinetic, tension,
-            stretched, free, counted[0], counted[1], landed[:, :2], landed[:, 2],
-            self.t[saved], tuple(shapes), self.chain, status=status,
+            nozzle, stretched, free, counted[0], counted[1], landed[:, :2],
+            landed[:, 2], self.t[saved], tuple(shapes), self.chain, status=status,
         )  # fmt: skip
 
 
@@ -104,6 +104,7 @@ class LayRun:
     tolerance: float
     draws: FedDraws | None
     iterations: int = field(default=0, init=False)
+    nozzle_tension: float = field(default=0.0, init=False)
 
     def result(
         self,
@@ -163,6 +164,7 @@ class LayRun:
             force = self.draws.force(chain, masses, t)
         new, iterations = self.step(chain, t, dt, force)
         self.iterations += iterations
+        self.nozzle_tension = self.step.nozzle_tension(chain, new, t, dt)
         return self.step.after_feeding(new, t + dt)
 
     def _seen(self, chain: FedChain) -> tuple[float, ...]:
@@ -173,6 +175,7 @@ class LayRun:
         return (
             0.5 * masses[air] @ (chain.v[air] ** 2).sum(axis=1),
             float(np.abs(chain.tension).max()),
+            self.nozzle_tension,
             float(np.abs(lengths / string.edge - 1).max()),
             string.edge * float((air[:-1] | air[1:]).sum()),
             self.iterations,

@@ -177,10 +177,13 @@ MOTION = Layout(
     _TIMES,
     *_SERIES,
     Quantity("potential", ("t",), "energy of bending and weight", units="J"),
+    Quantity("end_tension", ("t", "end"), "tension at both ends", units="N"),
     _SAVED,
     _Shapes(),
     _ERROR,
-)
+    Quantity("end_tension_error", ("end",), "bounds of the errors of the last ones",
+             units="N"),
+)  # fmt: skip
 LAY_DOWN = Layout(
     "Fibre laid down on a belt",
     Attribute("Conventions", values=lambda _: "CF-1.11"),
@@ -188,6 +191,8 @@ LAY_DOWN = Layout(
     _BELT,
     _TIMES,
     *_SERIES,
+    Quantity("nozzle_tension", ("t",), "tension where the fibre leaves the nozzle",
+             units="N"),
     Quantity("free_length", ("t",), "length of fibre that does not lie", units="m"),
     Quantity("rejected", ("t",), "steps that were taken in halves"),
     _Landed(),

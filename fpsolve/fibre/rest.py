@@ -11,6 +11,7 @@ from scipy.sparse.linalg import splu
 
 from fpsolve._support.arrays import Array
 from fpsolve.errors import EquilibriumError
+from fpsolve.fibre.end_tensions import EndTensions
 from fpsolve.fibre.ends import Free
 from fpsolve.fibre.forces import Forces
 from fpsolve.fibre.shapes import checked_shape, first_shape
@@ -44,6 +45,10 @@ class Equilibrium:
         Bound of the error of a position in m from the length of the edges: the distance
         to the shape of half as many, three times the error at order 2. Infinite for
         fewer than 8 edges or an odd number of them.
+    end_tension : ndarray, shape (2,)
+        T(0) and T(L) in N; `tension` is that in the middle of the edges. Of order 2.
+    end_tension_error : ndarray, shape (2,)
+        Bounds of their errors, likewise from half of the edges.
     """
 
     string: String
@@ -51,6 +56,8 @@ class Equilibrium:
     tension: Array
     residual: float
     position_error: float
+    end_tension: Array
+    end_tension_error: Array
 
     @property
     def s(self) -> Array:
@@ -103,7 +110,8 @@ def equilibrium(string: String, *, shape: ArrayLike | None = None) -> Equilibriu
     if half is None:
         return rest
     error = float(np.linalg.norm(half.r - rest.r[::2], axis=1).max())
-    return replace(rest, position_error=error)
+    pulled = np.abs(half.end_tension - rest.end_tension)
+    return replace(rest, position_error=error, end_tension_error=pulled)
 
 
 def coarser(rest: Equilibrium) -> Equilibrium | None:
@@ -116,11 +124,13 @@ def coarser(rest: Equilibrium) -> Equilibrium | None:
 
 
 def _at_rest(string: String, first: Array) -> Equilibrium:
-    return Equilibrium(string, *_Rest(string).found(first), np.inf)
+    r, tension, residual = _Rest(string).found(first)
+    ends, unknown = EndTensions(string)(r, tension), np.full(2, np.inf)
+    return Equilibrium(string, r, tension, residual, np.inf, ends, unknown)
 
 
 def _coarser(string: String, r: Array) -> Array:
-    """Every second node, its edges stretched to their length from the held end on."""
+    """Every second node, its edges stretched to their length from a held end on."""
     edges = np.diff(r[::2], axis=0)
     edges *= string.edge / np.linalg.norm(edges, axis=1, keepdims=True)
     if isinstance(string.start, Free):
@@ -129,6 +139,9 @@ def _coarser(string: String, r: Array) -> Array:
             - np.concatenate([np.cumsum(edges[::-1], axis=0)[::-1], np.zeros((1, 3))])
         )
     found = r[0] + np.concatenate([np.zeros((1, 3)), np.cumsum(edges, axis=0)])
+    if not isinstance(string.end, Free):
+        # Longer edges reach further than the place that holds them.
+        found[-1] = r[-1]
     return np.asarray(found)
 
 

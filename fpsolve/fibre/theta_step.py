@@ -91,10 +91,13 @@ class HalvedStep:
     step : ThetaStep
     tolerance : float
         Of the distance of positions after one step and two halves, in m.
+    middle : ndarray, shape (n + 1, 3)
+        r^θ of the last step that was taken.
     """
 
     step: ThetaStep
     tolerance: float
+    middle: Array = field(default_factory=lambda: np.empty((0, 3)), init=False)
     _iterations: int = field(default=0, init=False)
     _force: Array | None = field(default=None, init=False)
     _steps: dict[float, ThetaStep] = field(default_factory=dict, init=False)
@@ -120,6 +123,7 @@ class HalvedStep:
         if dt not in self._steps:
             self._steps[dt] = replace(self.step, dt=dt)
         r, v, tension, iterations = self._steps[dt](*state, t, self._force)
+        self.middle = state[0] + self.step.theta * (r - state[0])
         self._iterations += iterations
         return r, v, tension
 

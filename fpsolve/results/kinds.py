@@ -63,7 +63,7 @@ KINDS = {
         "fpsolve.paths.fibres.fibre_curve:FibreCurve",
     ),
     "fibre-motion": Kind(
-        "motions of a fibre", "fpsolve.fibre.motion:simulate",
+        "motions of a fibre", "fpsolve.fibre.simulating:simulate",
         "fpsolve.fibre.motion:Motion",
     ),
     "fibre-lay-down": Kind(

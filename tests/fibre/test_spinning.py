@@ -108,7 +108,7 @@ def catenary(n_edges):
 
 def test_a_chain_fed_as_fast_as_the_belt_stays_the_catenary_that_moves_along_itself():
     # T = ρA (g (a + z) + V²): the speed adds to the tension, the shape stays.
-    errors, tensions = [], []
+    errors, tensions, scatters = [], [], []
     for n_edges in (8, 16, 32):
         edge, shape = catenary(n_edges)
         tangent = np.gradient(shape, axis=0)
@@ -122,12 +122,18 @@ def test_a_chain_fed_as_fast_as_the_belt_stays_the_catenary_that_moves_along_its
         )  # fmt: skip
         errors.append(max(np.abs(r[:, 2] - sunk(r[:, 0])).max() for r in motion.r))
         expected = string.line_density * (9.81 * (A + HEIGHT) + SPEED**2)
-        tensions.append(abs(motion.largest_tension[1:].mean() / expected - 1))
+        # After the first third, in which what began as a polygon settles.
+        pulls = motion.nozzle_tension[len(motion.t) // 3 :] / expected - 1
+        tensions.append(abs(pulls.mean()))
+        scatters.append(pulls.std())
     # Twice the length has been spun; nodes come in and land one at a time.
     assert (orders(errors) > 1.7).all(), errors
     assert errors[-1] < 2.5e-4
-    assert (orders(tensions) > 0.4).all(), tensions
-    assert tensions[-1] < 0.04
+    # The mean pull at the nozzle has an error of the steps as well, 0.6 % here; that
+    # of the first edge is off by half of its weight and bend, 3 %.
+    assert max(tensions) < 0.01, tensions
+    assert (orders(scatters) > 0.6).all(), scatters
+    assert scatters[-1] < 0.03
 
 
 def test_an_arrest_is_the_nearest_motion_that_stretches_no_edge():
