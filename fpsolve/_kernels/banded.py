@@ -1,42 +1,56 @@
-"""Linear systems whose matrix has few diagonals, by Gauss with partial pivoting."""
+"""Linear systems whose matrix has few diagonals, by Gauss without pivoting."""
 
 from fpsolve._kernels.compiling import njit
+from fpsolve._kernels.lanes import LANES, fused, put, spread, take
 
-__all__ = ["solve_banded_rows"]
+__all__ = ["REACH", "solve_banded_rows"]
+
+# Diagonals to either side of the main one: two times as many as lanes.
+REACH = 2 * LANES
 
 
-@njit(cache=True, fastmath={"contract"}, error_model="numpy")
+@njit(cache=True, error_model="numpy")
 def solve_banded_rows(rows, known):
-    """Solve in place for `known`; `rows` is destroyed.
+    """Solve in place for `known` (n,); `rows` is destroyed.
 
-    rows (n, 2 b + 1): row i from column max(0, i − b) on, for a matrix without entries
-    further than b from its diagonal; entries beyond column n − 1 are 0. known (n,). A
-    singular matrix leaves numbers that are not finite.
+    rows (n, 17): row i from column i − 8 to i + 8; what lies outside of the matrix is
+    not looked at. Without pivoting: exact to rounding where no leading block is nearly
+    singular, as of matrices whose symmetric part is positive definite. A zero pivot
+    leaves numbers that are not finite.
     """
-    n, width = rows.shape
-    reach = (width - 1) // 2
-    for k in range(n):
-        # Every row that is reached from here begins at column k.
-        last = min(k + reach, n - 1)
-        pivot = k
-        for i in range(k + 1, last + 1):
-            if abs(rows[i, 0]) > abs(rows[pivot, 0]):
-                pivot = i
-        if pivot != k:
-            known[k], known[pivot] = known[pivot], known[k]
-            for j in range(width):
-                rows[k, j], rows[pivot, j] = rows[pivot, j], rows[k, j]
-        first = rows[k]
-        scale = 1.0 / first[0]
-        for i in range(k + 1, last + 1):
-            row = rows[i]
-            factor = row[0] * scale
-            known[i] -= factor * known[k]
-            for j in range(1, width):
-                row[j - 1] = row[j] - factor * first[j]
-            row[width - 1] = 0.0
+    n = known.size
+    for k in range(n - REACH):
+        scale = -1.0 / rows[k, REACH]
+        held = known[k]
+        near, far = take(rows, (k, REACH + 1)), take(rows, (k, REACH + LANES + 1))
+        for below in range(1, REACH + 1):
+            row, first = k + below, REACH + 1 - below
+            factor = rows[row, first - 1] * scale
+            known[row] += factor * held
+            times = spread(factor)
+            put(rows, (row, first), fused(times, near, take(rows, (row, first))))
+            first += LANES
+            put(rows, (row, first), fused(times, far, take(rows, (row, first))))
+        rows[k, REACH] = scale
+    for k in range(max(n - REACH, 0), n):
+        scale = -1.0 / rows[k, REACH]
+        for below in range(1, n - k):
+            row, first = k + below, REACH - below
+            factor = rows[row, first] * scale
+            known[row] += factor * known[k]
+            for beside in range(1, n - k):
+                rows[row, first + beside] += factor * rows[k, REACH + beside]
+        rows[k, REACH] = scale
+    _substitute(rows, known)
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def _substitute(rows, known):
+    """From the last unknown to the first; the diagonal holds −1/pivot."""
+    n = known.size
     for k in range(n - 1, -1, -1):
-        found = known[k]
-        for j in range(1, min(width, n - k)):
-            found -= rows[k, j] * known[k + j]
-        known[k] = found / rows[k, 0]
+        found = 0.0
+        # What has just been found comes last, so that little waits for it.
+        for beside in range(min(REACH, n - 1 - k), 0, -1):
+            found += rows[k, REACH + beside] * known[k + beside]
+        known[k] = (found - known[k]) * rows[k, REACH]

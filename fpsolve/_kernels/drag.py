@@ -15,6 +15,7 @@ __all__ = [
     "drag_slopes",
     "many_resistances",
     "oseen",
+    "oseen_slopes",
     "pull_chain",
 ]
 
@@ -23,8 +24,6 @@ __all__ = [
 CREEPING, FAST = 0.1, 100.0
 # ½ − γ + ln 8, as [MW11]_ gives it.
 OSEEN = 2.0022
-# Relative change of a Reynolds number for the slope of a resistance.
-CHANGE = 1e-6
 # Squares of speeds are divided by, of air at rest too.
 SMALLEST = 1e-300
 
@@ -53,7 +52,7 @@ class Drag(NamedTuple):
     scale: float
 
 
-@njit(cache=True, fastmath={"contract"}, error_model="numpy")
+@njit(cache=True, error_model="numpy")
 def oseen(w):
     """(w c_n, w c_τ) of the creeping flow."""
     s = OSEEN - np.log(w)
@@ -63,7 +62,7 @@ def oseen(w):
     return normal, 4 * np.pi / twice * along
 
 
-@njit(cache=True, fastmath={"contract"}, error_model="numpy")
+@njit(cache=True, error_model="numpy", forceinline=True)
 def _resistances(w, between, joined, joint):
     """(w c_n, w c_τ) for w ≥ 0; see `Drag`."""
     if w < joined:
@@ -83,7 +82,7 @@ def _resistances(w, between, joined, joint):
     )
 
 
-@njit(cache=True, fastmath={"contract"}, error_model="numpy")
+@njit(cache=True, error_model="numpy")
 def _rising(x, values, joined):
     """The cubic from Stokes's limit, where it has no slope, to the joint at x = 1."""
     end, start, slope = values
@@ -91,14 +90,56 @@ def _rising(x, values, joined):
     return start + x**2 * (3 * rise - last + x * (last - 2 * rise))
 
 
-@njit(cache=True, fastmath={"contract"}, error_model="numpy")
+@njit(cache=True, error_model="numpy")
 def many_resistances(w, between, joined, joint, out):
     """(w c_n, w c_τ) for w ≥ 0 (n,), out (2, n); see `Drag`."""
     for i in range(w.size):
         out[0, i], out[1, i] = _resistances(w[i], between, joined, joint)
 
 
-@njit(cache=True, fastmath={"contract"}, error_model="numpy")
+@njit(cache=True, error_model="numpy")
+def oseen_slopes(w):
+    """d/dw of `oseen`, of its exact derivative."""
+    s = OSEEN - np.log(w)
+    twice, square = 2 * s - 1, 2 * s**2 - 2 * s + 1
+    # Of r = a(S) − w² b(S), dS/dw = −1/w.
+    normal = 4 / (w * s**2) - w / 4 * (s**2 - s / 2 + 5 / 16) / s**2
+    normal += w / 8 * (1 / (2 * s**2) - 5 / (8 * s**3))
+    along = 8 / (w * twice**2) - w / 2 * square / twice**2
+    along += w / 4 * ((4 * s - 2) / twice**2 - 4 * square / twice**3)
+    return np.pi * normal, np.pi * along
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+def _resistances_and_rises(w, between, joined, joint):
+    """(r_n, w ∂_w r_n), (r_τ, w ∂_w r_τ) for w ≥ 0; see `Drag`."""
+    normal, along = _resistances(w, between, joined, joint)
+    if w < joined:
+        x = w / joined
+        return (
+            (normal, _rise(x, joint[0], joined)), (along, _rise(x, joint[1], joined))
+        )  # fmt: skip
+    if w < CREEPING:
+        steep, less_steep = oseen_slopes(w)
+        return (normal, w * steep), (along, w * less_steep)
+    if w > FAST:
+        return (normal, 0.5 * (along + w)), (along, 0.5 * along)
+    x, one, other = np.log(w), between[0], between[1]
+    return (
+        (normal, normal * (1 + one[1] + x * (2 * one[2] + 3 * x * one[3]))),
+        (along, along * (1 + other[1] + x * (2 * other[2] + 3 * x * other[3]))),
+    )
+
+
+@njit(cache=True, error_model="numpy")
+def _rise(x, values, joined):
+    """x ∂_x of `_rising`."""
+    end, start, slope = values
+    rise, last = end - start, slope * joined
+    return x**2 * (2 * (3 * rise - last) + 3 * x * (last - 2 * rise))
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
 def _pull(drag, v, tangent, force, slope):
     """Force per length and −∂f/∂v of one place; the arguments are rows."""
     moving = v[0] * tangent[0] + v[1] * tangent[1] + v[2] * tangent[2]
@@ -107,34 +148,32 @@ def _pull(drag, v, tangent, force, slope):
         across = v[c] - moving * tangent[c]
         square += across * across
     w = drag.reynolds * np.sqrt(square)
-    changed = w + CHANGE * max(w, 1e-3)
-    r_n, r_t = _resistances(w, drag.between, drag.joined, drag.joint)
-    risen, followed = _resistances(changed, drag.between, drag.joined, drag.joint)
+    (r_n, risen), (r_t, followed) = _resistances_and_rises(
+        w, drag.between, drag.joined, drag.joint
+    )
     # Resistances grow with the speed across: ∂w/∂v = w v_n/|v_n|².
-    steeper = w / ((changed - w) * max(square, SMALLEST))
+    steep = 1.0 / max(square, SMALLEST)
     for c in range(3):
         along = moving * tangent[c]
-        force[c] = drag.scale * (r_n * (v[c] - along) + r_t * along)
-    for c in range(3):
-        along = moving * tangent[c]
-        grown = (risen - r_n) * (v[c] - along) + (followed - r_t) * along
+        across = v[c] - along
+        force[c] = drag.scale * (r_n * across + r_t * along)
+        grown = steep * (risen * across + followed * along)
         for d in range(3):
-            both = tangent[c] * tangent[d]
-            found = r_t * both - r_n * both
+            found = (r_t - r_n) * tangent[c] * tangent[d]
             if c == d:
                 found += r_n
-            found += steeper * grown * (v[d] - moving * tangent[d])
+            found += grown * (v[d] - moving * tangent[d])
             slope[c, d] = drag.scale * found
 
 
-@njit(cache=True, fastmath={"contract"}, error_model="numpy")
+@njit(cache=True, error_model="numpy")
 def drag_slopes(drag, velocity, tangent, force, slope):
     """f and ∂f/∂v for velocities of the air past the fibre, (n, 3) and (n, 3, 3)."""
     for i in range(velocity.shape[0]):
         _pull(drag, velocity[i], tangent[i], force[i], slope[i])
 
 
-@njit(cache=True, fastmath={"contract"}, error_model="numpy")
+@njit(cache=True, error_model="numpy")
 def pull_chain(drag, middle, rate, wind, lengths, force, slope):
     """Force on every node of a chain, and its slope in the velocity of the node.
 

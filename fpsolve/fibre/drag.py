@@ -14,6 +14,7 @@ from fpsolve._kernels.drag import (
     OSEEN,
     many_resistances,
     oseen,
+    oseen_slopes,
 )
 from fpsolve._support.arrays import Array, check_finite_numbers
 from fpsolve._support.checks import check_positive, shown
@@ -211,24 +212,6 @@ def _resistances(w: Array, slenderness: float) -> tuple[Array, Array]:
     return found[0].reshape(w.shape), found[1].reshape(w.shape)
 
 
-def _oseen_slopes(w: float) -> tuple[float, float]:
-    """d/dw of `_oseen`, of its exact derivative."""
-    s = OSEEN - math.log(w)
-    twice = 2 * s - 1
-    # Of r = a(S) − w² b(S), dS/dw = −1/w.
-    a = -4 * math.pi / s**2, -8 * math.pi / twice**2
-    b = (
-        math.pi / 8 * (s**2 - s / 2 + 5 / 16) / s**2,
-        math.pi / 4 * (2 * s**2 - 2 * s + 1) / twice**2,
-    )
-    turned = (
-        math.pi / 8 * (1 / (2 * s**2) - 5 / (8 * s**3)),
-        math.pi / 4 * ((4 * s - 2) / twice**2 - 4 * (2 * s**2 - 2 * s + 1) / twice**3),
-    )
-    normal, tangential = (-a[i] / w - 2 * w * b[i] + w * turned[i] for i in range(2))
-    return normal, tangential
-
-
 @cache
 def _matched() -> tuple[Array, Array]:
     """Coefficients of ln c in powers of ln w, from values and slopes at both ends."""
@@ -240,7 +223,7 @@ def _matched() -> tuple[Array, Array]:
     # d ln c/d ln w = w r'/r − 1.
     start = [
         CREEPING * slope / r - 1
-        for r, slope in zip(creeping, _oseen_slopes(CREEPING), strict=True)
+        for r, slope in zip(creeping, oseen_slopes(CREEPING), strict=True)
     ]
     root = 2 / math.sqrt(FAST)
     end = [-0.5 * root / (root + 0.5), -0.5]
@@ -277,7 +260,7 @@ def _stokes(slenderness: float) -> tuple[float, float]:
 def _at_joint(slenderness: float) -> tuple[tuple[float, float], ...]:
     """Values at w₀, at 0, and slopes at w₀, each of r_n and r_τ."""
     joined = _joint(slenderness)
-    return oseen(joined), _stokes(slenderness), _oseen_slopes(joined)
+    return oseen(joined), _stokes(slenderness), oseen_slopes(joined)
 
 
 def _checked_reynolds(name: str, w: ArrayLike) -> Array:

@@ -13,7 +13,6 @@ from fpsolve._kernels.chain import (
     Iterate,
     Pull,
     Step,
-    largest_stretch,
     newton,
 )
 from fpsolve._kernels.drag import Drag, pull_chain
@@ -26,6 +25,8 @@ __all__ = ["Wind", "found_step"]
 
 # Of an edge: deviations of its length that Newton's method leaves.
 KEPT = 1e-12
+# Times that: changes of places that it would make next.
+FOLLOWS = 100.0
 MOST_ITERATIONS = 25
 
 
@@ -79,21 +80,24 @@ def found_step(
     EdgeLengthError
         If Newton's method does not converge.
     """
-    size = 4 * chain.masses.size - 1
+    size = 4 * chain.masses.size
     rows, known = np.empty((size, 2 * REACH + 1)), np.empty(size)
     pull = _none(chain.masses)
-    allowed, change = KEPT * chain.edge, np.inf
-    for iteration in range(MOST_ITERATIONS):
-        left = largest_stretch(chain.edge, iterate.r, iterate.moved)
-        if change <= 1e3 * allowed and left <= allowed:
-            return iteration
-        if not np.isfinite(left):
-            break
+    allowed, change = KEPT * chain.edge, 0.0
+    for iteration in range(1, MOST_ITERATIONS + 1):
         if wind is not None:
             wind.pull(chain, step, iterate, t, pull)
         if force is not None:
             pull.force[...] = force if wind is None else pull.force + force
-        change = newton(chain, step, iterate, pull, rows, known)
+        before = change
+        change, left = newton(chain, step, iterate, pull, rows, known)
+        if not np.isfinite(left):
+            break
+        # Of the next, if this is to the last as that will be to this, which is far
+        # too much where Newton's method is quadratic.
+        ahead = change * min(change / before, 1.0) if before else change
+        if left <= allowed and ahead <= FOLLOWS * allowed:
+            return iteration
     raise EdgeLengthError(t, step.dt, float(left / chain.edge))
 
 

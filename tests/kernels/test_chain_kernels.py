@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from scipy.linalg import solve_banded
 
 from fpsolve._kernels import banded, chain, drag
 from fpsolve._kernels.chain import Chain, Iterate, Pull, Step
@@ -11,37 +10,30 @@ from fpsolve.fibre import AirFlow
 N_EDGES = 6
 
 
-def banded_problem(n, reach, rng):
-    """Rows from their first column on, the same as a dense matrix, a right side."""
-    dense = np.triu(np.tril(rng.normal(size=(n, n)), reach), -reach)
-    # Zeros on the diagonal, as the rows of lengths have them: pivots are needed.
-    dense[np.arange(3, n, 4), np.arange(3, n, 4)] = 0.0
-    rows = np.zeros((n, 2 * reach + 1))
-    for i in range(n):
-        first = max(0, i - reach)
-        part = dense[i, first : i + reach + 1]
-        rows[i, : part.size] = part
+def banded_problem(n, rng):
+    """Rows about their diagonals, the same as a dense matrix, a right side."""
+    dense = np.triu(np.tril(rng.normal(size=(n, n)), 8), -8)
+    # A positive definite symmetric part: no pivots are needed.
+    dense += (1 - np.linalg.eigvalsh(dense + dense.T)[0]) / 2 * np.eye(n)
+    padded = np.pad(dense, ((0, 0), (8, 8)), constant_values=7.0)
+    rows = np.array([padded[i, i : i + 17] for i in range(n)])
     return rows, dense, rng.normal(size=n)
 
 
-@pytest.mark.parametrize("reach", [1, 8])
-def test_a_banded_system_is_solved_as_by_lapack(reach):
-    rng = np.random.default_rng(4)
-    rows, dense, known = banded_problem(43, reach, rng)
-    bands = np.zeros((2 * reach + 1, 43))
-    for i in range(43):
-        for j in range(max(0, i - reach), min(43, i + reach + 1)):
-            bands[reach + i - j, j] = dense[i, j]
-    expected = solve_banded((reach, reach), bands, known)
-    found = known.copy()
-    banded.solve_banded_rows(rows, found)
-    # The same pivots; fused operations round otherwise, times the condition.
-    allowed = 1e-15 * np.linalg.cond(dense) * np.abs(expected).max()
-    np.testing.assert_allclose(found, expected, rtol=0, atol=allowed)
+@pytest.mark.parametrize("n", [3, 8, 9, 43])
+def test_a_banded_system_is_solved_as_by_lapack(n):
+    rows, dense, known = banded_problem(n, np.random.default_rng(4))
+    expected = np.linalg.solve(dense, known)
+    for function in (banded.solve_banded_rows, banded.solve_banded_rows.py_func):
+        found = known.copy()
+        function(rows.copy(), found)
+        # Of rounding, times the condition.
+        allowed = 1e-15 * np.linalg.cond(dense) * np.abs(expected).max()
+        np.testing.assert_allclose(found, expected, rtol=0, atol=allowed)
 
 
 def test_a_singular_system_leaves_no_number():
-    rows, known = np.zeros((8, 3)), np.ones(8)
+    rows, known = np.zeros((20, 17)), np.ones(20)
     banded.solve_banded_rows(rows, known)
     assert not np.isfinite(known).any()
 
@@ -64,9 +56,9 @@ def newton_problem():
 def after(function, problem):
     numbers, step, iterate, pull = problem
     mine = Iterate(*(one.copy() for one in iterate))
-    rows, known = np.full((4 * N_EDGES + 3, 17), 7.0), np.full(4 * N_EDGES + 3, 7.0)
-    largest = function(numbers, step, mine, pull, rows, known)
-    return largest, mine
+    rows, known = np.full((4 * N_EDGES + 4, 17), 7.0), np.full(4 * N_EDGES + 4, 7.0)
+    said = function(numbers, step, mine, pull, rows, known)
+    return said, mine
 
 
 def test_a_compiled_step_of_newton_equals_its_source():
@@ -129,6 +121,27 @@ def test_the_largest_stretch_sees_what_is_no_number():
     assert chain.largest_stretch.py_func(0.5, r, moved) == pytest.approx(expected)
     moved[2, 1] = np.nan
     assert np.isnan(chain.largest_stretch(0.5, r, moved))
+
+
+@pytest.mark.parametrize("reynolds", [1e-3, 0.05, 2.0, 500.0])
+def test_the_slope_of_the_drag_is_its_derivative(reynolds):
+    numbers = AirFlow((0.0, 0.0, 0.0)).drag(20e-6)
+    tangent = np.array([[1.0, 2.0, 2.0]]) / 3
+    across = np.array([[2.0, 1.0, -2.0]]) / 3 * reynolds / numbers.reynolds
+    velocity, step = across + 3 * tangent, 1e-4 * np.linalg.norm(across)
+    found, slope = np.empty((1, 3)), np.empty((1, 3, 3))
+    drag.drag_slopes(numbers, velocity, tangent, found, slope)
+    for d in range(3):
+        ends = np.empty((2, 1, 3))
+        for sign, end in zip((-1, 1), ends, strict=True):
+            drag.drag_slopes(
+                numbers, velocity + sign * step * np.eye(3)[d], tangent, end,
+                np.empty((1, 3, 3)),
+            )  # fmt: skip
+        difference = (ends[1] - ends[0])[0] / (2 * step)
+        # Differences of relative steps of 1e-4, of order 2.
+        size = np.abs(slope).max()
+        np.testing.assert_allclose(slope[0, :, d], difference, rtol=0, atol=1e-7 * size)
 
 
 def test_compiled_drag_equals_its_source():
