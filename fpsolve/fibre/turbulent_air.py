@@ -3,23 +3,32 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from functools import cache
 
 import numpy as np
 from scipy.interpolate import CubicSpline
-from scipy.special import i0e, i1e
 
 from fpsolve._support.arrays import Array
-from fpsolve.fibre.turbulence import FALLING, RISING, TurbulenceSpectrum, energy_of
+from fpsolve.fibre.turbulence import (
+    FALLING,
+    RISING,
+    TurbulenceSpectrum,
+    bessel_parts,
+    energy_of,
+)
 
 __all__ = ["smallest_energy", "white_amplitudes"]
 
-# Of a quadrature over ln κ in each of the three parts of E.
-PER_PART = 20
-# Lengths in ln κ of the first and the last: E/κ has lost 1e-9 of its integral.
-BELOW, BEYOND = 5.5, 3.5
 # √(ln k − ln k_min) up to which κ₁ and κ₂ are tabulated, and values in between.
-REACH, PLACES = 7.0, 400
+REACH, PLACES = 7.0, 600
+# ln q between which integrals over E are tabulated, and how closely: 1e-10 of their
+# limits is left at the ends, splines are off by as much in between.
+SLOW, FAST, STEP = -14.0, 12.0, 0.025
+# Lengths in ln κ of the three parts of E: what lies beyond has lost e^−29 and more.
+BELOW, BETWEEN, BEYOND = 12.0, 18.0, 5.0
+# Of a quadrature over ln κ, for pieces of about this length.
+PER_PIECE, PIECE = 16, 2.5
 
 
 def smallest_energy(dissipation: Array, viscosity: float, constant: float) -> Array:
@@ -38,9 +47,13 @@ def white_amplitudes(
 ) -> Array:
     """`TurbulenceSpectrum.decaying_amplitudes` of another spectrum for every node.
 
-    By a quadrature of fewer places, and κ₁ and κ₂ from a table over k/(C_K^(3/2)
-    √(νε)), between which it is a cubic: errors are below 1e-4 of the first amplitude,
-    of frozen turbulence 1e-6.
+    With y = κ/κ_i and q_i = κ_i |w_n| t_T integrals of E/κ over the two ends of the
+    spectrum and over the powers from κ_i on are functions of q_i alone,
+
+        ∫ E/κ J dκ = C_K ε^(2/3) (κ₁^(−5/3) P(q₁) + κ₂^(−5/3) Q(q₂)) ,
+
+    tabulated over ln q for J₀ and for J₀ − J₁; κ₁ and κ₂ are over k/(C_K^(3/2) √(νε)).
+    Errors are below 1e-8 of the first amplitude, as a quadrature says.
 
     Parameters
     ----------
@@ -56,44 +69,74 @@ def white_amplitudes(
     ndarray, shape (3, n)
         In m^(3/2)/s^(1/2): along the fibre, along w_n, along their normal.
     """
-    kappa, energies = _quadrature(k, dissipation, viscosity, constant)
-    if decay_time is None:
-        square = 2 * math.pi * (energies / kappa**2).sum(axis=1) / speed
-        return np.asarray(np.sqrt(np.stack([square, square, 0.0 * square])))
-    a = ((speed * decay_time)[:, None] * kappa / 2) ** 2
-    even, odd = i0e(a), i1e(a)
-    shapes = np.stack([even, 0.5 * (even + odd), 0.5 * (even - odd)])
-    squares = (shapes * (energies / kappa)).sum(axis=2)
-    squares *= (2 * math.pi) ** 1.5 / 2 * decay_time
-    return np.asarray(np.sqrt(np.maximum(squares, 0.0)))
-
-
-def _quadrature(
-    k: Array, dissipation: Array, viscosity: float, constant: float
-) -> tuple[Array, Array]:
-    """Wave numbers and E dκ at them, shape (n, 3 PER_PART)."""
     scaled = k / _energy_scale(dissipation, viscosity, constant)
     # Rounding of the smallest energy itself.
     above = np.sqrt(np.maximum(np.log(scaled / energy_of(1.0)), 0.0))
     unit = (dissipation ** (1 / 3) / (2 * viscosity * constant)) ** 0.75
-    first, last = unit * np.exp(_inertial_ranges()(above)).T
-    places, weights = np.polynomial.legendre.leggauss(PER_PART)
-    inside, steps = 0.5 * (places + 1), 0.5 * weights
-    first, last = first[:, None], last[:, None]
-    decades = np.log(last / first)
-    below, beyond = np.exp(BELOW * (inside - 1)), np.exp(BEYOND * inside)
-    between = first * np.exp(decades * inside)
-    rising = _sum(RISING, below) * below * BELOW * steps
-    falling = _sum(FALLING, beyond) * beyond * BEYOND * steps
-    # E of the inertial range at κ is κ^(−5/3), dκ is κ d ln κ.
-    parts = (
-        first ** (-2 / 3) * rising,
-        between ** (-2 / 3) * decades * steps,
-        last ** (-2 / 3) * falling,
+    ends = unit * np.exp(_inertial_ranges()(above)).T
+    level = constant * dissipation ** (2 / 3)
+    if decay_time is None:
+        first, last = (
+            end ** (-8 / 3) * part for end, part in zip(ends, _frozen(), strict=True)
+        )
+        square = 2 * math.pi * level * (first + last) / speed
+        return np.asarray(np.sqrt(np.stack([square, square, 0.0 * square])))
+    passed = ends * (speed * decay_time)
+    even, less = np.sum(
+        [
+            end ** (-5 / 3) * _from_table(table, q)
+            for end, table, q in zip(ends, _decaying(), passed, strict=True)
+        ],
+        axis=0,
     )
-    kappa = np.concatenate([first * below, between, last * beyond], axis=1)
-    level = constant * dissipation[:, None] ** (2 / 3)
-    return kappa, level * np.concatenate(parts, axis=1)
+    squares = np.stack([even, even - 0.5 * less, 0.5 * less])
+    squares *= (2 * math.pi) ** 1.5 / 2 * level * decay_time
+    return np.asarray(np.sqrt(np.maximum(squares, 0.0)))
+
+
+def _from_table(table: CubicSpline, q: Array) -> Array:
+    """∫ of J₀ and of J₀ − J₁, shape (2, n)."""
+    place = np.log(np.clip(q, math.exp(SLOW), math.exp(FAST)))
+    grown = 1 + q**2
+    even, less = table(place).T
+    root = np.sqrt(grown)
+    return np.stack([even / root, less / (root * grown)])
+
+
+@cache
+def _decaying() -> tuple[CubicSpline, CubicSpline]:
+    """√(1 + q²) P of J₀ and (1 + q²)^(3/2) P of J₀ − J₁ over ln q, and those of Q."""
+    places = np.linspace(SLOW, FAST, round((FAST - SLOW) / STEP) + 1)
+    q = np.exp(places)
+    scale = np.sqrt(1 + q**2) ** np.array([[1], [3]])
+    below = _integrals(q, -BELOW, 0.0, _sum(RISING))
+    between = _integrals(q, 0.0, BETWEEN, lambda y: y ** (-5 / 3))
+    beyond = _integrals(q, 0.0, BEYOND, _sum(FALLING))
+    return (
+        CubicSpline(places, (scale * (below + between)).T),
+        CubicSpline(places, (scale * (beyond - between)).T),
+    )
+
+
+def _integrals(
+    q: Array, low: float, high: float, shape: Callable[[Array], Array]
+) -> Array:
+    """∫ shape(y) J(q² y²/4) dy/y over ln y of J₀ and of J₀ − J₁, shape (2, q.size)."""
+    places, weights = np.polynomial.legendre.leggauss(PER_PIECE)
+    ends = np.linspace(low, high, math.ceil((high - low) / PIECE) + 1)
+    half = 0.5 * np.diff(ends)[:, None]
+    y = np.exp(ends[:-1, None] + half * (places + 1)).ravel()
+    weighted = (half * weights).ravel() * shape(y)
+    even, less = bessel_parts((np.multiply.outer(q, y) / 2) ** 2)
+    return np.stack([even @ weighted, less @ weighted])
+
+
+@cache
+def _frozen() -> tuple[float, float]:
+    """P and Q of ∫ E/κ² dκ = C_K ε^(2/3) (κ₁^(−8/3) P + κ₂^(−8/3) Q)."""
+    (rising, a), (falling, b) = RISING, FALLING
+    # The powers are those of y; between both it is y^(−5/3).
+    return float(a @ (1 / (rising - 1)) + 3 / 8), float(b @ (1 / (1 - falling)) - 3 / 8)
 
 
 @cache
@@ -112,7 +155,7 @@ def _energy_scale(dissipation: Array, viscosity: float, constant: float) -> Arra
     return np.asarray(constant**1.5 * np.sqrt(2 * viscosity * dissipation))
 
 
-def _sum(part: tuple[Array, Array], x: Array) -> Array:
-    """Σ_j a_j x^j."""
+def _sum(part: tuple[Array, Array]) -> Callable[[Array], Array]:
+    """Y ↦ Σ_j a_j y^j."""
     powers, coefficients = part
-    return np.asarray(np.power.outer(x, powers) @ coefficients)
+    return lambda y: np.asarray(np.power.outer(y, powers) @ coefficients)
