@@ -95,6 +95,10 @@ from .spectral.evolution.solution import SpectralSolution as SpectralSolution
 from .spectral.evolution.steady import SpectralSteadyState as SpectralSteadyState
 from .spectral.evolution.steady import spectral_steady_state as spectral_steady_state
 from .studies.fourier_grid import suggest_fourier_grid as suggest_fourier_grid
+from .studies.identification.compare_models import compare_models as compare_models
+from .studies.identification.comparison import (
+    IdentificationComparison as IdentificationComparison,
+)
 from .studies.identification.identification import Identification as Identification
 from .studies.identification.identify import identify as identify
 from .studies.suggested_grid import suggest_grid as suggest_grid

@@ -41,7 +41,7 @@ _TABLES = (
     "model", "grid", "scheme", "initial", "potential", "p0", "settings", "options",
     "solver", "sampler", "versions", "environment", "provenance", "call",
     "fpsolve_checksums", "process", "web", "curve",
-    "undetermined", "string", "belt",
+    "undetermined", "string", "belt", "models",
 )  # fmt: skip
 _LISTS = (
     "saved_steps", "truncation", "sectors", "fpsolve_attributes", "nozzle_phases",

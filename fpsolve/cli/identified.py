@@ -25,8 +25,12 @@ From = Annotated[
 def read_identification(
     path: Path, config: Path | None, options: list[str]
 ) -> Identification:
-    """Return what a file holds; ValueError if the model is given in two ways."""
+    """Return what a file holds; of a comparison that of the preferred model.
+
+    ValueError if the model is given in two ways.
+    """
     from fpsolve.results.load import load
+    from fpsolve.studies.identification.comparison import IdentificationComparison
     from fpsolve.studies.identification.identification import Identification
 
     beside = [*options, *([] if config is None else [f"`{config}`"])]
@@ -36,6 +40,8 @@ def read_identification(
             "model is that of the identification."
         )
     found = load(path)
+    if isinstance(found, IdentificationComparison):
+        found = found.best
     if not isinstance(found, Identification):
         raise ValueError(
             f"`--from` must be an identification, got `{path}`, which is none; "

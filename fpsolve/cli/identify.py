@@ -17,6 +17,9 @@ from fpsolve.cli.options import METHODS, MODELS, MOTIONS, UNITS, NoFigures, Out
 from fpsolve.cli.options import proposing as of
 
 if TYPE_CHECKING:
+    from fpsolve.evolution.saved import Saved
+    from fpsolve.paths.fibres.fibre_curve import FibreCurve
+    from fpsolve.studies.identification.comparison import IdentificationComparison
     from fpsolve.studies.identification.identification import Identification
 
 __all__ = ["identify"]
@@ -27,6 +30,8 @@ _UNITS = {
     "sigma1": "m", "sigma2": "m", "noise": "m^-1/2", "curvature_noise": "m^-3/2",
 }  # fmt: skip
 _BOTH = "both"
+# The smooth model has the name that other commands take.
+_BOTH_FILES = (f"{_NAME}.nc", f"{_NAME}-basic.nc", f"{_NAME}-comparison.nc")
 _EXAMPLE = "that of the packaged fibre"
 
 
@@ -114,10 +119,7 @@ def identify(
     the identification, which `fpsolve web` and `predict` take, figures and a report.
     """
     with command(out, figures=not no_figures) as frame:
-        from fpsolve.studies.identification.identify import identify as identified
-
-        models = MODELS if model == _BOTH else (model,)
-        names = [_file_of(name, models) for name in models]
+        names = _BOTH_FILES if model == _BOTH else _BOTH_FILES[:1]
         frame.claim(*names, f"{_NAME}.html", *_pictures())
         given = Measured(
             curve, belt_speed, ds, unit, position_error, nozzle, angular_speed, radius,
@@ -130,34 +132,51 @@ def identify(
             model=model, method=method, nozzle=nozzle, angular_speed=angular_speed,
             radius=radius, phase=phase, seed=seed,
         )  # fmt: skip
-        found = {}
-        for one, name in zip(models, names, strict=True):
-            result = identified(fibre, model=one, method=method, seed=seed)
-            if len(models) > 1:
-                print_lines(f"The {one} model")
-            print_identification(result)
-            found[name] = replace(result, provenance={**result.provenance, **used})
-        if len(models) > 1:
-            print_comparison(dict(zip(models, found.values(), strict=True)))
-        _write(frame, found)
+        if model == _BOTH:
+            _finish_both(frame, fibre, method, seed, used)
+        else:
+            _finish_one(frame, fibre, model, method, seed, used)
 
 
-def _file_of(model: str, models: tuple[str, ...]) -> str:
-    """The first one has the name that other commands take."""
-    return f"{_NAME}.nc" if model == models[0] else f"{_NAME}-{model}.nc"
+def _finish_one(frame: Frame, fibre: FibreCurve, model: str, method: str, seed: int,
+                used: dict[str, Any]) -> None:  # fmt: skip
+    """Identify one model; print and write it."""
+    from fpsolve.studies.identification.identify import identify as identified
+
+    result = identified(fibre, model=model, method=method, seed=seed)
+    print_identification(result)
+    found = replace(result, provenance={**result.provenance, **used})
+    _write(frame, {f"{_NAME}.nc": found}, found)
 
 
-def print_comparison(found: Mapping[str, Identification]) -> None:
-    """Print AIC and p-values of models of one fibre side by side."""
-    rows = []
-    for name, one in found.items():
-        worst = min(one.p_values, key=one.p_values.__getitem__)
+def _finish_both(frame: Frame, fibre: FibreCurve, method: str, seed: int,
+                 used: dict[str, Any]) -> None:  # fmt: skip
+    """Identify both models; print and write each, and the comparison."""
+    from fpsolve.studies.identification.compare_models import compare_models
+
+    result = compare_models(fibre, method=method, seed=seed)
+    for name, one in result.identifications.items():
+        print_lines(f"The {name} model")
+        print_identification(one)
+    print_comparison(result)
+    basic, smooth = (
+        replace(one, provenance={**one.provenance, **used})
+        for one in result.identifications.values()
+    )
+    found = replace(result, provenance={**result.provenance, **used})
+    _write(frame, dict(zip(_BOTH_FILES, (smooth, basic, found), strict=True)), found)
+
+
+def print_comparison(found: IdentificationComparison) -> None:
+    """Print AIC and p-values of both models side by side, and what they mean."""
+    rows, weights = [], found.weights
+    for name, one in found.identifications.items():
         aic = "-" if one.aic is None else f"{one.aic:.2f}"
-        rows.append((name, aic, f"{one.p_values[worst]:.3f}", worst))
-    print_table(("model", "AIC", "smallest p-value", "of the"), rows)
-    if all(one.aic is not None for one in found.values()):
-        best = min(found, key=lambda name: found[name].aic or 0.0)
-        print_lines(f"AIC prefers the {best} model.")
+        weight = "-" if weights is None else f"{weights[name]:.3g}"
+        smallest, together = min(one.p_values.values()), found.p_values[name]
+        rows.append((name, aic, weight, f"{smallest:.3f}", f"{together:.3f}"))
+    print_table(("model", "AIC", "weight", "smallest p-value", "p-value of all"), rows)
+    print_lines(*found.verdict)
 
 
 def print_identification(found: Identification) -> None:
@@ -194,15 +213,19 @@ def _pictures() -> tuple[str, str]:
     return f"{_NAME}-fibres.png", f"{_NAME}-increments.png"
 
 
-def _write(frame: Frame, found: Mapping[str, Identification]) -> None:
-    """Every one by its name; figures and a page of all."""
+def _write(
+    frame: Frame,
+    files: Mapping[str, Saved],
+    found: Identification | IdentificationComparison,
+) -> None:
+    """Every file by its name; figures and a page."""
     from fpsolve.pages.page import report_text
     from fpsolve.plotting.identification import plot_identified_fibres, plot_increments
 
-    for name, one in found.items():
+    for name, one in files.items():
         frame.finish(one, name)
     for draw, name in zip(
         (plot_identified_fibres, plot_increments), _pictures(), strict=True
     ):
-        frame.figure(draw, *found.values(), name=name)
-    frame.text(report_text(list(found.values())), f"{_NAME}.html")
+        frame.figure(draw, found, name=name)
+    frame.text(report_text(found), f"{_NAME}.html")

@@ -72,6 +72,15 @@ CAPTIONS = {
         "hold 95 % of the model's own fibres.",
         "Curves of the increments of data and model with bands",
     ),
+    "identification-comparison/fibres": (
+        "The fibre that was measured, and one of each identified model.",
+        "A measured fibre and one of each model beside it",
+    ),
+    "identification-comparison/increments": (
+        "Increments of angle and curvature against the length between them; bands "
+        "hold 95 % of a model's own fibres.",
+        "Curves of the increments of data and both models with bands",
+    ),
     "hydrodynamic/hydrodynamic": (
         "Plane densities at saved s; white: contours of the stationary density.",
         "Maps of the density, and curves of entropy, means and spread",

@@ -12,7 +12,7 @@ from fpsolve.pages.settings import model_or_unread
 if TYPE_CHECKING:
     from fpsolve.studies.identification.identification import Identification
 
-__all__ = ["section"]
+__all__ = ["parameter_rows", "section", "undetermined_notices"]
 
 SYMBOLS = {"sigma1": "σ₁", "sigma2": "σ₂", "noise": "A", "curvature_noise": "K"}
 # A p-value below it is evidence against the model.
@@ -31,7 +31,7 @@ def section(found: Identification, source: str) -> Section:
         about.append(("AIC", f"{found.aic:.6g}"))
     return Section("Identified parameters", source, [
         Part("Equation", model_or_unread(found.model, found.provenance)),
-        Part("Parameters", [_parameters(found), *_warnings(found)]),
+        Part("Parameters", [_parameters(found), *undetermined_notices(found)]),
         Part("Goodness of fit", [_fit(found)]),
         Part("Data and method", [Facts(about)]),
         Part("Figures", drawings(found)),
@@ -39,18 +39,25 @@ def section(found: Identification, source: str) -> Section:
     ])  # fmt: skip
 
 
-def _parameters(found: Identification) -> Table:
+def parameter_rows(found: Identification) -> list[tuple[str, ...]]:
+    """Symbol, estimate, standard error and 95 % interval of every parameter."""
     errors, intervals = found.standard_errors, found.interval(0.95)
-    rows = [
+    return [
         (SYMBOLS[name], f"{value:.5g}", f"{errors[name]:.2g}",
          f"{intervals[name][0]:.4g} to {intervals[name][1]:.4g}")
         for name, value in found.parameters.items()
     ]  # fmt: skip
+
+
+def _parameters(found: Identification) -> Table:
     head = ("parameter", "estimate", "standard error", "95 % interval")
-    return Table("In powers of the unit of length of the fibre.", head, rows)
+    return Table(
+        "In powers of the unit of length of the fibre.", head, parameter_rows(found)
+    )
 
 
-def _warnings(found: Identification) -> list[Block]:
+def undetermined_notices(found: Identification) -> list[Block]:
+    """Warnings of what the fibre does not determine."""
     return [
         Notice(f"{SYMBOLS[name]} is not determined: {why}.", "warning")
         for name, why in found.undetermined.items()

@@ -34,6 +34,7 @@ PAGES: dict[str, str | Callable[[Any, str], Section]] = {
     "spectrum": "fpsolve.pages.spectrum:section",
     "web-prediction": "fpsolve.pages.predicted_web:section",
     "identification": "fpsolve.pages.identification:section",
+    "identification-comparison": "fpsolve.pages.identification_comparison:section",
     "rate": "fpsolve.pages.rates:section",
     "large-noise": "fpsolve.pages.limits:large_section",
     "white-noise": "fpsolve.pages.white_noise:white_section",

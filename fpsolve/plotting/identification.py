@@ -11,6 +11,7 @@ from fpsolve._support.checks import check_kind
 from fpsolve.model.smooth import SmoothLayDownModel
 from fpsolve.plotting.fibres import THIN
 from fpsolve.plotting.style import COLOURS, PAGE, drawing, show_frame
+from fpsolve.studies.identification.comparison import IdentificationComparison
 from fpsolve.studies.identification.identification import Identification
 from fpsolve.studies.identification.surrogate import Surrogate
 
@@ -24,17 +25,22 @@ __all__ = ["plot_identified_fibres", "plot_increments"]
 LENGTH, MOST_POINTS = 100.0, 5000
 # Labels of fibres in metres are long.
 FEW_TICKS = 4
-_HINT = "it is what `identify` returns"
+# Of the models in their order; the data are black.
+_COLOURS = ("vermilion", "blue", "green")
+_HINT = "it is what `identify` or `compare_models` returns"
 
 
 def plot_identified_fibres(
-    identification: Identification, *others: Identification, seed: int = 0
+    identification: Identification | IdentificationComparison,
+    *others: Identification,
+    seed: int = 0,
 ) -> Figure:
     """The fibre on the belt and fibres of the identified models, as in figure 8.
 
     Parameters
     ----------
-    identification : Identification
+    identification : Identification or IdentificationComparison
+        What `identify` or `compare_models` returns.
     *others : Identification
         Other models of the same fibre, as the basic beside the smooth one.
     seed : int, optional
@@ -45,15 +51,17 @@ def plot_identified_fibres(
     [KMW09]_, figure 8.
     """
     several = _checked(identification, *others)
-    n = _n_points(identification)
-    eta = identification.data.pieces[0][:n]
+    n = _n_points(several[0])
+    eta = several[0].data.pieces[0][:n]
     fibres = [("data", eta)] + [
         (_name(one), _drawn(one, len(eta), seed)) for one in several
     ]
     with drawing(PAGE, 2.6) as figure:
         panels = figure.subplots(1, len(fibres), sharex=True, sharey=True)
-        for axes, (name, points) in zip(panels, fibres, strict=True):
-            axes.plot(*points.T, color=COLOURS["blue"], linewidth=THIN)
+        for axes, (name, points), colour in zip(
+            panels, fibres, ("black", *_COLOURS), strict=False
+        ):
+            axes.plot(*points.T, color=COLOURS[colour], linewidth=THIN)
             axes.set(title=name, xlabel=r"$\eta_1$")
             axes.set_aspect("equal")
             axes.locator_params(axis="x", nbins=FEW_TICKS)
@@ -62,14 +70,17 @@ def plot_identified_fibres(
     return figure
 
 
-def plot_increments(identification: Identification, *others: Identification) -> Figure:
+def plot_increments(
+    identification: Identification | IdentificationComparison, *others: Identification
+) -> Figure:
     """Increments Γ_α(h), Γ_κ(h) of the fibre and of identified models, as in figure 9.
 
     Bands hold 95 % of the model's own fibres of the size of the data.
 
     Parameters
     ----------
-    identification : Identification
+    identification : Identification or IdentificationComparison
+        What `identify` or `compare_models` returns.
     *others : Identification
         Other models of the same fibre.
 
@@ -95,17 +106,24 @@ def _draw_bands(axes: Axes, several: list[Identification], name: str) -> None:
     first = several[0]
     axes.plot(first.h, getattr(first, name)[0], ".", markersize=3,
               color=COLOURS["black"], label="data")  # fmt: skip
-    for one, colour in zip(several, ("vermilion", "blue", "green"), strict=False):
+    for one, colour in zip(several, _COLOURS, strict=False):
         _, mean, low, high = getattr(one, name)
         axes.plot(one.h, mean, color=COLOURS[colour], label=_name(one))
         axes.fill_between(one.h, low, high, color=COLOURS[colour], alpha=0.25,
                           linewidth=0)  # fmt: skip
 
 
-def _checked(*several: Identification) -> list[Identification]:
+def _checked(
+    first: Identification | IdentificationComparison, *others: Identification
+) -> list[Identification]:
+    """All of them; of a comparison both."""
+    if isinstance(first, IdentificationComparison):
+        several = [*first.identifications.values(), *others]
+    else:
+        several = [first, *others]
     for one in several:
         check_kind("identification", one, Identification, _HINT)
-    return list(several)
+    return several
 
 
 def _name(one: Identification) -> str:

@@ -174,6 +174,10 @@ FIGURES: dict[str, Callable[[Any], Figures]] = {
         fibres=(plot_identified_fibres, lambda found: found.model is not None),
         increments=(plot_increments, always),
     ),
+    "identification-comparison": each(
+        fibres=(plot_identified_fibres, lambda found: found.basic.model is not None),
+        increments=(plot_increments, always),
+    ),
     "rate": each(
         integral=(plot_inverse_decay_rate, known("inverse_decay_rate")),
         rates=(plot_rates, known("gap", "branch_rate")),

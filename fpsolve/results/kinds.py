@@ -141,6 +141,11 @@ KINDS = {
         "identifications", "fpsolve.studies.identification.identify:identify",
         "fpsolve.studies.identification.identification:Identification",
     ),
+    "identification-comparison": Kind(
+        "comparisons of identified models",
+        "fpsolve.studies.identification.compare_models:compare_models",
+        "fpsolve.studies.identification.comparison:IdentificationComparison",
+    ),
     "rate": Kind(
         "rates against the noise",
         "fpsolve.studies.rates.rate_versus_noise:rate_versus_noise", counts="cases",

@@ -10,6 +10,7 @@ from known_identifications import known_identification
 from web_numbers import choose_few_nodes
 
 import fpsolve as fp
+from fpsolve.cli.identified import read_identification
 from fpsolve.cli.measured import Measured, measured_fibre
 from fpsolve.studies.identification import example
 from fpsolve.studies.identification.synthetic import laid_fibres
@@ -68,11 +69,11 @@ def test_both_models_are_compared_in_one_call(fpsolve, table, tmp_path, monkeypa
     known["basic"] = replace(known["basic"], log_likelihood=10.0)
     known["smooth"] = replace(known["smooth"], log_likelihood=12.0)
 
-    def identify(fibre, *, model, method, seed):
-        return known[model]
+    def compare_models(fibre, *, method, seed):
+        return fp.IdentificationComparison(**known)
 
-    place = module("fpsolve.studies.identification.identify")
-    monkeypatch.setattr(place, "identify", identify)
+    place = module("fpsolve.studies.identification.compare_models")
+    monkeypatch.setattr(place, "compare_models", compare_models)
     pages = []
     monkeypatch.setattr(
         module("fpsolve.pages.page"),
@@ -85,20 +86,23 @@ def test_both_models_are_compared_in_one_call(fpsolve, table, tmp_path, monkeypa
     )  # fmt: skip
     assert result.exit_code == 0, result.output
     assert files(tmp_path / "out") == [
-        "identification-basic.nc", "identification-fibres.png",
-        "identification-increments.png", "identification.html", "identification.nc",
+        "identification-basic.nc", "identification-comparison.nc",
+        "identification-fibres.png", "identification-increments.png",
+        "identification.html", "identification.nc",
     ]  # fmt: skip
     # 2·4 - 2·12 against 2·3 - 2·10.
-    assert "AIC prefers the smooth model." in result.stdout
+    assert "AIC prefers the smooth model, by 2.00 (weight 0.731)." in result.stdout
+    assert "The goodness of fit rejects neither model." in result.stdout
     assert "-16.00" in result.stdout
     assert "-14.00" in result.stdout
+    both = fp.load(tmp_path / "out" / "identification-comparison.nc")
+    assert "--model both" in both.provenance["command"]
     for name, file in (("smooth", ""), ("basic", "-basic")):
         found = fp.load(tmp_path / "out" / f"identification{file}.nc")
         assert found.parameters == known[name].parameters
+        assert both.identifications[name].parameters == known[name].parameters
         assert "--model both" in found.provenance["command"]
-    assert [one.parameters for one in pages[0]] == [
-        known[name].parameters for name in ("smooth", "basic")
-    ]
+    assert [one.aic for one in pages] == [{"basic": -14.0, "smooth": -16.0}]
 
 
 def test_the_packaged_fibre_is_what_its_command_writes():
@@ -242,6 +246,18 @@ def test_a_web_is_laid_of_an_identification(fpsolve, identification, tmp_path):
         model, width=0.03, length=0.02, pixel=5e-4, spacing=5e-4, seed=3
     )
     np.testing.assert_array_equal(laid.length_density, expected.length_density)
+
+
+def test_of_a_comparison_the_preferred_model_is_taken(tmp_path):
+    smooth = fp.SmoothLayDownModel(MODEL.potential, 2e-3, 30.0, MODEL.curve)
+    both = [known_identification(one) for one in (MODEL, smooth)]
+    told = [
+        replace(one, log_likelihood=x) for one, x in zip(both, (9.0, 9.9), strict=True)
+    ]
+    compared = fp.IdentificationComparison(*told, provenance={"versions": {}})
+    path = compared.save(tmp_path / "both.nc")
+    # The smooth model has a parameter more, which costs more than 0.9.
+    assert read_identification(path, None, []).model == MODEL
 
 
 def test_errors_of_parameters_are_carried_to_a_prediction(

@@ -160,8 +160,12 @@ MAKERS = {
         zones=[0.5, 2.0], bands=[(0.5, 2.0)], tolerance=0.05,
     ),
     "identification": lambda: fp.identify(
-        fp.sample_paths(SMOOTH, 1, 200.0, 0.1, seed=1, save_at=0.1 * np.arange(2001)),
+        fp.sample_paths(SMOOTH, 1, 140.0, 0.2, seed=1, save_at=0.2 * np.arange(701)),
         model="basic", seed=2,
+    ),
+    "identification-comparison": lambda: fp.compare_models(
+        fp.sample_paths(SMOOTH, 1, 140.0, 0.2, seed=1, save_at=0.2 * np.arange(701)),
+        seed=2,
     ),
     "rate": lambda: studies.rate_versus_noise(
         QUADRATIC, [2.0], quick=True, parts=["gap"], workers=0
@@ -294,8 +298,8 @@ def test_a_study_is_loaded_from_a_store_bit_for_bit(name, tmp_path):
 
 # What takes seconds to compute is repeated at night; others of its sort are here.
 DEAR = {
-    "rate", "spectrum, smooth", "steady-state, smooth", "web-homogeneity",
-    "web-prediction",
+    "identification-comparison", "rate", "spectrum, smooth", "steady-state, smooth",
+    "web-homogeneity", "web-prediction",
 }  # fmt: skip
 
 
@@ -359,6 +363,7 @@ NUMBERS = {
     "spectrum": lambda found: f"{found.gap:.12g}",
     "fibre-motion": lambda found: f"{found.energy[-1]:.6g} J at last",
     "fibre-lay-down": lambda found: f"{found.fed:.6g} m",
+    "identification-comparison": lambda found: f"by {found.aic_difference:.2f}",
     "web": lambda found: f"{found.mean_length_density():.6g}",
     "nozzle-design": lambda found: f"{found.values[0]:.5g}",
     "web-design": lambda found: f"{found.cv[0]:.5g}",

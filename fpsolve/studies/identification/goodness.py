@@ -19,12 +19,13 @@ from fpsolve.studies.identification.increments import (
 )
 from fpsolve.studies.identification.surrogate import (
     LONGEST_REACH,
+    N_FIBRES,
     Surrogate,
     model_of,
     whole_periods,
 )
 
-__all__ = ["TESTS", "Comparison", "compare_with_surrogate"]
+__all__ = ["N_SURROGATES", "TESTS", "Comparison", "compare_with_surrogate"]
 
 # What is compared.
 TESTS = (
@@ -33,10 +34,9 @@ TESTS = (
 )  # fmt: skip
 # Cells of equal probability of the laws of ξ, and waves of that of α.
 N_CELLS, N_WAVES = 10, 4
-# Surrogates, 64 a round.
+# Surrogates, 64 a round: their smallest p-value is below 5 % of six tests.
 N_ROUNDS = 2
-# Points of all surrogates of a round above which one round is enough.
-LARGEST = 4_000_000
+N_SURROGATES = N_ROUNDS * N_FIBRES
 # Points of surrogates that tell what a relative change of a parameter does.
 N_POINTS, CHANGE = 3125, 0.15
 # Part of surrogates outside of the bands on either side.
@@ -85,17 +85,20 @@ def compare_with_surrogate(
     model = estimate.model
     surrogate = Surrogate(fibre, seed)
     own = samples_of(fibre)
-    size = len(fibre.eta) * 64
-    rounds = [surrogate.pieces(model) for _ in range(N_ROUNDS if size < LARGEST else 1)]
-    drawn = [squares(pieces, lags, fibre.ds) for pieces in rounds]
     data = squares(own, lags, fibre.ds)
+    drawn, parts, edges = [], [], None
+    for _ in range(N_ROUNDS):
+        # One after the other, for a long fibre fills the memory.
+        pieces = surrogate.pieces(model)
+        edges = _cells(pieces) if edges is None else edges
+        drawn.append(squares(pieces, lags, fibre.ds))
+        parts.append(_numbers(drawn[-1], pieces, edges))
+    assert edges is not None
     both = Squares(*(
         np.concatenate([getattr(one, name) for one in drawn], axis=1)
         for name in ("xi", "angle", "curvature")
     ))  # fmt: skip
-    edges = _cells(rounds[0])
     of_data = _numbers(data, own, edges)
-    parts = [_numbers(one, p, edges) for one, p in zip(drawn, rounds, strict=True)]
     slopes = _slopes(surrogate, estimate, lags, edges)
     shifts = _shifts(estimate, both.xi.shape[1], seed)
     p_values = {}

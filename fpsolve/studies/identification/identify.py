@@ -25,7 +25,7 @@ from fpsolve.studies.identification.increments import (
 from fpsolve.studies.identification.likelihood_basic import estimate_basic
 from fpsolve.studies.identification.likelihood_smooth import estimate_smooth
 
-__all__ = ["identify"]
+__all__ = ["described_fibre", "fibre_of", "identify", "said_by_fibre"]
 
 MODELS = ("basic", "smooth")
 
@@ -44,18 +44,18 @@ ESTIMATORS: dict[str, Callable[..., Estimate]] = {
 }
 
 
-def _described(value: Any, bound: Mapping[str, Any]) -> Any:
+def described_fibre(value: Any, bound: Mapping[str, Any]) -> Any:
     """The fibre of a call; its points are those of the result."""
     fibre = fibre_of(value, bound.get("ds"), bound.get("curve"))
     about = fibre.parts("data.eta", "data.lengths", "data.s_start")
     return {"$fibre_curve": about}
 
 
-def _nothing(value: Any, bound: Mapping[str, Any]) -> None:
+def said_by_fibre(value: Any, bound: Mapping[str, Any]) -> None:
     """The fibre says it."""
 
 
-@recorded(curve_or_eta=_described, ds=_nothing, curve=_nothing)
+@recorded(curve_or_eta=described_fibre, ds=said_by_fibre, curve=said_by_fibre)
 def identify(
     curve_or_eta: Any,
     *,

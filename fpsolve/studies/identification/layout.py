@@ -22,7 +22,7 @@ from fpsolve.paths.fibres.fibre_curve import FibreCurve
 from fpsolve.studies.identification.goodness import TESTS
 from fpsolve.studies.identification.increments import NAMES
 
-__all__ = ["IDENTIFICATION", "METHODS"]
+__all__ = ["FIBRE", "IDENTIFICATION", "METHODS", "checked_method"]
 
 METHODS = ("likelihood", "functional")
 _LAG, _BAND = ("lag",), ("band", "lag")
@@ -53,6 +53,9 @@ class _Data(Part):
         for part in FibreCurve.layout.parts:
             fields |= part.read(source)
         return {"data": FibreCurve(**fields)}
+
+
+FIBRE = _Data()
 
 
 class _Parameters(Part):
@@ -92,7 +95,7 @@ class _Parameters(Part):
 IDENTIFICATION = Layout(
     "Parameters of a lay-down model from a fibre curve",
     Model(equation="process_equation"),
-    _Data(),
+    FIBRE,
     Attribute("method", read_as=checked_method),
     _Parameters(),
     Variable("log_likelihood", (), "logarithm of the likelihood", kind=float,
