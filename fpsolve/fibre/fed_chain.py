@@ -17,12 +17,14 @@ from fpsolve.fibre.end_tensions import nozzle_tension
 from fpsolve.fibre.ends import Belt, Nozzle
 from fpsolve.fibre.newton import Wind, found_step
 from fpsolve.fibre.string import FEWEST_EDGES, String
-from fpsolve.fibre.theta_step import string_chain
+from fpsolve.fibre.theta_step import longer_chain, string_chain
 
 __all__ = ["FedChain", "FedStep", "put_down"]
 
 # Laid nodes that the part in the air still bends against.
 KEPT_NODES = 2
+# Edges of a chain whose middle a longer one repeats.
+ALIKE = 8
 # Of an edge: what has come out by a whole one at the end of a step, but for rounding.
 ROUNDING = 1e-9
 
@@ -139,8 +141,13 @@ class FedStep:
         """Masses and stiffness of so many edges."""
         found = self._chains.get(n_edges)
         if found is None:
-            length = self.string.edge * n_edges
-            found = string_chain(replace(self.string, length=length, n_edges=n_edges))
+            if n_edges > ALIKE:
+                found = longer_chain(self.numbers(ALIKE), n_edges)
+            else:
+                length = self.string.edge * n_edges
+                found = string_chain(
+                    replace(self.string, length=length, n_edges=n_edges)
+                )
             self._chains[n_edges] = found
         return found
 

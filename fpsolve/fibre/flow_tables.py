@@ -14,6 +14,7 @@ import numpy as np
 from scipy.interpolate import LinearNDInterpolator, RegularGridInterpolator
 from scipy.spatial import Delaunay, QhullError
 
+from fpsolve._kernels.flow import between_planes
 from fpsolve._support.arrays import Array
 from fpsolve.errors import FlowRangeError
 
@@ -82,7 +83,14 @@ class TableField:
 
     def __call__(self, r: Array, t: float) -> Array:
         """Values at positions r of shape (n, 3); NaN nowhere, or a FlowRangeError."""
-        found = np.asarray(self._interpolated(self._wanted(r)))
+        if self.points.axes is None:
+            wanted = [AXES.index(name) for name in self.points.names]
+            found = np.asarray(self._scattered(r[:, wanted]))
+        else:
+            axes, values = self._planes
+            out = np.empty((len(r), values.shape[3]))
+            between_planes(axes, values, np.ascontiguousarray(r), out)
+            found = out.reshape(len(r), *self.values.shape[len(self.points.axes) :])
         outside = ~np.isfinite(found.reshape(len(r), -1)).all(axis=1)
         if outside.any():
             raise FlowRangeError(t, tuple(r[outside.argmax()].tolist()))
@@ -116,20 +124,23 @@ class TableField:
         away = away[np.isfinite(away.reshape(len(away), -1)).all(axis=1)]
         return _largest(away, self.values.ndim - 1)
 
-    def _wanted(self, r: Array) -> Array:
-        return r[:, [AXES.index(name) for name in self.points.names]]
-
     @cached_property
     def _triangles(self) -> Delaunay:
         return triangles_of(self.points)
 
     @cached_property
-    def _interpolated(self) -> RegularGridInterpolator | LinearNDInterpolator:
-        if self.points.axes is None:
-            return LinearNDInterpolator(self._triangles, self.values)
-        return RegularGridInterpolator(
-            self.points.axes, self.values, bounds_error=False
-        )
+    def _scattered(self) -> LinearNDInterpolator:
+        return LinearNDInterpolator(self._triangles, self.values)
+
+    @cached_property
+    def _planes(self) -> tuple[tuple[Array, ...], Array]:
+        """Axes and values over x, y and z, with one plane of what is left out."""
+        axes = self.points.axes
+        assert axes is not None
+        given = dict(zip(self.points.names, axes, strict=True))
+        every = tuple(np.array(given.get(name, [0.0])) for name in AXES)
+        shape = (*(one.size for one in every), -1)
+        return every, np.ascontiguousarray(self.values).reshape(shape)
 
 
 def fields_of_dataset(table: xr.Dataset) -> dict[str, TableField]:

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from fpsolve._kernels.chain_series import chain_numbers
 from fpsolve._support.arrays import Array
 from fpsolve._support.interrupts import deferred_interrupts
 from fpsolve._support.progress import ProgressCallback
@@ -169,17 +170,11 @@ class LayRun:
 
     def _seen(self, chain: FedChain) -> tuple[float, ...]:
         """The series at one time."""
-        string, air = self.step.string, ~chain.laid
         masses = self.step.numbers(chain.tension.size).masses
-        lengths = np.linalg.norm(np.diff(chain.r, axis=0), axis=1)
-        return (
-            0.5 * masses[air] @ (chain.v[air] ** 2).sum(axis=1),
-            float(np.abs(chain.tension).max()),
-            self.nozzle_tension,
-            float(np.abs(lengths / string.edge - 1).max()),
-            string.edge * float((air[:-1] | air[1:]).sum()),
-            self.iterations,
+        kinetic, largest, *others = chain_numbers(
+            chain.r, chain.v, chain.tension, masses, chain.laid, self.step.string.edge
         )
+        return (kinetic, largest, self.nozzle_tension, *others, self.iterations)
 
 
 def _apart(before: FedChain, one: FedChain, other: FedChain) -> float:

@@ -121,7 +121,7 @@ class Noise:
         # At its stationary law; the steps are numbered from 1.
         self._process = np.zeros((self.size, 3))
         if time:
-            self._process = self._normal(0)[0] / math.sqrt(2 * time)
+            self._process = self._normal(0, 1)[0] / math.sqrt(2 * time)
 
     def mean(self, number: int) -> Array:
         """Over the step of this number, shape (size, 3); to be asked for 1, 2, … ."""
@@ -133,17 +133,17 @@ class Noise:
         """Over one piece; the process moves on to the end of it."""
         dt, time = self.dt / self.pieces, self.correlation_time
         if not time:
-            return np.asarray(self._normal(number)[0] / math.sqrt(dt))
+            return np.asarray(self._normal(number, 1)[0] / math.sqrt(dt))
         mean, moved = correlated_step(dt, time)
-        given = np.concatenate([self._process[None], self._normal(number)])
+        given = np.concatenate([self._process[None], self._normal(number, 2)])
         self._process = np.asarray(np.tensordot(moved, given, 1))
         return np.asarray(np.tensordot(mean, given, 1))
 
-    def _normal(self, number: int) -> Array:
-        """Standard normal numbers of a step, shape (2, size, 3)."""
+    def _normal(self, number: int, sets: int) -> Array:
+        """The first standard normal numbers of a step, shape (sets, size, 3)."""
         key = np.array([self.seed, number], dtype=np.uint64)
         generator = np.random.Generator(np.random.Philox(key=key))
-        return generator.standard_normal((2, self.size, 3))
+        return generator.standard_normal((sets, self.size, 3))
 
 
 @dataclass(eq=False)

@@ -16,7 +16,7 @@ from fpsolve.fibre.halving import Halving
 from fpsolve.fibre.newton import Wind, found_step
 from fpsolve.fibre.string import String
 
-__all__ = ["HalvedStep", "ThetaStep", "string_chain"]
+__all__ = ["HalvedStep", "ThetaStep", "longer_chain", "string_chain"]
 
 # r, v and T.
 State = tuple[Array, Array, Array]
@@ -143,3 +143,14 @@ def string_chain(string: String) -> Chain:
     fixed = np.ones((nodes, 3), dtype=bool)
     fixed[string.moving] = False
     return Chain(bending, forces.constant, string.masses, fixed, string.edge)
+
+
+def longer_chain(chain: Chain, n_edges: int) -> Chain:
+    """The same with more edges: nodes far from both ends are alike, such as the fifth.
+
+    Of at least eight edges, so that this one is.
+    """
+    more = n_edges + 1 - chain.masses.size
+    rows = np.insert(np.arange(chain.masses.size), 4, np.full(more, 4))
+    bending, constant, masses, fixed, edge = chain
+    return Chain(bending[rows], constant[rows], masses[rows], fixed[rows], edge)

@@ -2,9 +2,12 @@
 
 import numpy as np
 import pytest
+from scipy.interpolate import RegularGridInterpolator
 
 from fpsolve._kernels import banded, chain, drag
 from fpsolve._kernels.chain import Chain, Iterate, Pull, Step
+from fpsolve._kernels.chain_series import chain_numbers
+from fpsolve._kernels.flow import between_planes
 from fpsolve.fibre import AirFlow
 
 N_EDGES = 6
@@ -169,3 +172,41 @@ def test_compiled_drag_equals_its_source():
     drag.many_resistances(w, *numbers[:3], out[0])
     drag.many_resistances.py_func(w, *numbers[:3], out[1])
     np.testing.assert_allclose(out[0], out[1], rtol=1e-14)
+
+
+def test_compiled_numbers_of_a_chain_equal_their_source():
+    rng = np.random.default_rng(7)
+    r = np.cumsum(rng.normal(size=(6, 3)), axis=0)
+    v, tension, masses = rng.normal(size=(6, 3)), rng.normal(size=5), np.arange(1.0, 7)
+    laid = np.array([False, True, False, False, True, True])
+    arguments = (r, v, tension, masses, laid, 0.5)
+    found = chain_numbers(*arguments)
+    np.testing.assert_allclose(found, chain_numbers.py_func(*arguments), rtol=1e-14)
+    lengths = np.linalg.norm(np.diff(r, axis=0), axis=1)
+    kinetic = 0.5 * (masses * (v**2).sum(axis=1))[~laid].sum()
+    expected = [kinetic, np.abs(tension).max(), np.abs(2 * lengths - 1).max(), 2.0]
+    np.testing.assert_allclose(found, expected, rtol=1e-14)
+
+
+def test_values_between_planes_are_those_of_scipy():
+    rng = np.random.default_rng(8)
+    axes = tuple(np.sort([0.0, 1.0, *rng.uniform(size=n)]) for n in (2, 0, 3))
+    values = rng.normal(size=(4, 2, 5, 3))
+    r = rng.uniform(-0.1, 1.1, (50, 3))
+    # Corners of the grid, a place on one of its planes, and none.
+    r[:2] = [[one[end] for one in axes] for end in (0, -1)]
+    r[2] = np.nan
+    r[3:8, 0] = axes[0][1]
+    expected = RegularGridInterpolator(axes, values, bounds_error=False)(r)
+    assert 10 < np.isfinite(expected[:, 0]).sum() < 40
+    for function in (between_planes, between_planes.py_func):
+        found = np.empty((50, 3))
+        function(axes, values, r, found)
+        np.testing.assert_allclose(found, expected, rtol=0, atol=1e-14)
+    # Nothing depends on a coordinate that has one plane.
+    flat = (axes[0], np.zeros(1), axes[2])
+    function(flat, values[:, :1], r, found)
+    flattened = RegularGridInterpolator(
+        (axes[0], axes[2]), values[:, 0], bounds_error=False
+    )
+    np.testing.assert_allclose(found, flattened(r[:, [0, 2]]), rtol=0, atol=1e-14)
