@@ -27,7 +27,8 @@ from scipy.special import chdtri  # noqa: E402
 import fpsolve as fp  # noqa: E402
 from fpsolve.errors import ToleranceError  # noqa: E402
 from fpsolve.studies.identification.coordinates import (  # noqa: E402
-    logarithmic_interval,
+    FUNCTIONAL,
+    interval,
 )
 from fpsolve.studies.identification.functional_estimate import (  # noqa: E402
     estimate_by_functional,
@@ -124,13 +125,14 @@ class Kept:
 
 
 def row_of(parameters: dict[str, float], found: dict[str, Any]) -> dict[str, Any]:
-    """Deviations in standard errors of the logarithms, and which intervals hold."""
+    """Deviations in standard errors, of 1/σ and log A, log K; which intervals hold."""
     errors = np.sqrt(np.diag(found["covariance"]))
     row: dict[str, Any] = {}
     for (name, value), error in zip(parameters.items(), errors, strict=True):
         here = found["parameters"][name]
-        row[name] = np.log(here / value) * here / error
-        low, high = logarithmic_interval(here, error, 1.96)
+        far = here / value - 1 if name.startswith("sigma") else np.log(here / value)
+        row[name] = far * here / error
+        low, high = interval(name, here, error, 1.96, FUNCTIONAL)
         row[f"{name} held"] = low <= value <= high
     return row
 

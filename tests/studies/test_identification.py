@@ -105,9 +105,12 @@ def test_an_interval_by_likelihood_is_the_one_whose_coverage_was_measured():
     # ± z errors of 1/σ², which is 2 error/σ³ to first order.
     z = 1.959963984540054 * 2 * error / value**3
     assert [low**-2, high**-2] == pytest.approx([value**-2 + z, value**-2 - z])
-    # By the functional it is that of the logarithm.
+    # By the functional it is that of 1/σ, and without an upper end where that is not
+    # told from zero.
     plain = found("smooth", "smooth").interval(0.95)["sigma1"]
-    assert np.sqrt(np.prod(plain)) == pytest.approx(value)
+    assert np.mean(np.reciprocal(plain)) == pytest.approx(1 / value)
+    wide = replace(found("smooth", "smooth"), covariance=np.eye(4)).interval(0.95)
+    assert wide["sigma1"][1] == np.inf
 
 
 SHORT = fibre("smooth").eta[:200]

@@ -19,6 +19,8 @@ from fpsolve.model.smooth import SmoothLayDownModel
 from fpsolve.studies.identification.chord_law import Parameters
 
 __all__ = [
+    "FUNCTIONAL",
+    "LIKELIHOOD",
     "covariance_of",
     "interval",
     "logarithmic_interval",
@@ -28,6 +30,8 @@ __all__ = [
 ]
 
 NAMES = ("sigma1", "sigma2", "noise", "curvature_noise")
+# Powers of 1/σ in which the errors of a throwing range are even, by the method.
+LIKELIHOOD, FUNCTIONAL = 2, 1
 
 
 def parameters_at(coordinates: Array) -> Parameters:
@@ -76,11 +80,15 @@ def model_at(coordinates: Array, curve: Curve) -> FibreModel:
 
 
 def interval(
-    name: str, value: float, error: float, deviations: float
+    name: str, value: float, error: float, deviations: float, power: int = LIKELIHOOD
 ) -> tuple[float, float]:
-    """Value ± deviations · error, in the coordinate in which the likelihood is even.
+    """Value ± deviations · error, in the coordinate in which errors are even.
 
-    In 1/σ² for throwing ranges, up to infinity; in the logarithm for the noises.
+    In σ^(-power) for throwing ranges, up to infinity; in the logarithm for the noises.
+    The likelihood is even in 1/σ², the strength of the force. The functional sees how
+    wide a fibre lies: its relative error is that of as many lengths as the fibre
+    remembers, A²σ² of it each where it is loud, so that it grows with σ and 1/σ has an
+    error of its own size wherever σ is found.
 
     Parameters
     ----------
@@ -90,14 +98,16 @@ def interval(
         Of the parameter itself; the error to first order.
     deviations : float
         1.96 for 95 %.
+    power : int
+        `LIKELIHOOD` or `FUNCTIONAL`.
     """
     if not name.startswith("sigma"):
         return logarithmic_interval(value, error, deviations)
-    share = deviations * error / value
-    wide = 1 - 2 * share
+    share = power * deviations * error / value
+    wide = 1 - share
     return (
-        value / math.sqrt(1 + 2 * share),
-        value / math.sqrt(wide) if wide > 0 else math.inf,
+        value * (1 + share) ** (-1 / power),
+        value * wide ** (-1 / power) if wide > 0 else math.inf,
     )
 
 

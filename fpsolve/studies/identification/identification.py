@@ -13,8 +13,8 @@ from fpsolve.evolution.call import Call
 from fpsolve.evolution.saved import Saved
 from fpsolve.model.fibre import FibreModel
 from fpsolve.paths.fibres.fibre_curve import FibreCurve
+from fpsolve.studies.identification.coordinates import FUNCTIONAL, LIKELIHOOD
 from fpsolve.studies.identification.coordinates import interval as even_interval
-from fpsolve.studies.identification.coordinates import logarithmic_interval
 from fpsolve.studies.identification.layout import IDENTIFICATION
 
 if TYPE_CHECKING:
@@ -97,8 +97,9 @@ class Identification(Saved):
     def interval(self, level: float = 0.95) -> dict[str, tuple[float, float]]:
         """Intervals that hold a true parameter with that probability.
 
-        By likelihood ± z errors in 1/σ² for throwing ranges, in which it is even, and
-        in logarithms for noises; by the functional in logarithms, P exp(±z δP/P).
+        ± z errors in 1/σ² for throwing ranges by likelihood, in 1/σ by the functional,
+        in which either is even, up to infinity; in logarithms for noises,
+        P exp(±z δP/P).
 
         Parameters
         ----------
@@ -116,13 +117,9 @@ class Identification(Saved):
         if not 0 < level < 1:
             raise ValueError(f"`level` must lie between 0 and 1, got {level:g}.")
         z, errors = float(ndtri(0.5 + 0.5 * level)), self.standard_errors
-        if self.method == "likelihood":
-            return {
-                name: even_interval(name, value, errors[name], z)
-                for name, value in self.parameters.items()
-            }
+        power = LIKELIHOOD if self.method == "likelihood" else FUNCTIONAL
         return {
-            name: logarithmic_interval(value, errors[name], z)
+            name: even_interval(name, value, errors[name], z, power)
             for name, value in self.parameters.items()
         }
 
