@@ -22,6 +22,13 @@ THRESHOLD = 0.1
 # Where more of the columns have no such pivot on the diagonal, rows are exchanged all
 # the time and the symmetric order fills the factors; unless they are full anyway.
 FEW, SPARSE = 0.4, 20
+# How rough the neighbour of an eigenvalue may be that is followed, relative to its
+# distance from the shift; how much of everything its start holds; from which distance
+# on, in units of that of the eigenvalue, inverse iteration converges; and how often it
+# is applied.
+ROUGH, EVERYTHING, APART, MOST = 0.1, 1e-2, 8.0, 24
+# An eigenvector that inverse iteration moves by less is known.
+STILL = 2e-13
 # Restarts of one Arnoldi iteration; most end after twenty. Below a size all eigenvalues
 # cost less than another iteration.
 RESTARTS, SMALL = 200, 600
@@ -102,6 +109,40 @@ class ShiftedInverse:
         values, vectors = self._all() if found is None else found
         order = np.argsort(np.abs(values - self.shift), kind="stable")[:n]
         return values[order].astype(complex), vectors[:, order].astype(complex)
+
+    def nearest(self, n: int, start: Any, apart: float) -> tuple[Complex, Complex]:
+        """The nearest eigenvalue to rounding, and its neighbours.
+
+        Those are rough, and there may be one only, if they are more than `apart` from
+        it; else they are n, as of `eigenpairs`. Among many at nearly the same distance,
+        as where an essential spectrum is near, all of them cost a hundred times as much
+        as the nearest does by inverse iteration.
+        """
+        if self.dense or self.size <= 2 * n:
+            return self.eigenpairs(n, start)
+        known, everything = self._start(start), self._start(None)
+        share = EVERYTHING * np.linalg.norm(known) / np.linalg.norm(everything)
+        values, vectors = self.eigenpairs(2, known + share * everything, ROUGH)
+        near, far = np.abs(values - self.shift)
+        beside = neighbour(values, 0)
+        alone = beside is not None and abs(beside - values[0]) > apart
+        if alone and far > APART * near and self._iterate(values, vectors):
+            return values, vectors
+        return self.eigenpairs(n, start)
+
+    def _iterate(self, values: Complex, vectors: Complex) -> bool:
+        """The first eigenpair by inverse iteration; whether it stands still."""
+        vector = self._start(vectors[:, 0])
+        vector = vector / np.linalg.norm(vector)
+        for _ in range(MOST):
+            image = self.operator.matvec(vector)
+            inverse = np.vdot(vector, image)
+            defect = np.linalg.norm(image - inverse * vector)
+            vector = image / np.linalg.norm(image)
+            if defect <= STILL * abs(inverse):
+                values[0], vectors[:, 0] = self.shift + 1.0 / inverse, vector
+                return True
+        return False
 
     def distance(self) -> float:
         """Distance of the nearest eigenvalue from the shift, to about one per cent."""

@@ -26,6 +26,8 @@ __all__ = [
 
 # Eigenvalues nearer than this share of the rate are compared as a pair.
 PAIR = 0.1
+# Those further from each other than this share, roughly, are not.
+BESIDE = 3 * PAIR
 # Successive changes that do not fall to this share are the beginning of a long tail, of
 # algebraic decay at worst. The first change is taken as if they fell to FIRST, and none
 # falls more slowly than to SLOWEST.
@@ -50,7 +52,7 @@ def next_mode(
     real = abs(value.imag) < PAIR * mode.rate
     shift = complex(value.real + off, 0.0 if real else value.imag)
     inverse = inverse_of(discretisation, mode.sector, truncation, shift, work)
-    values, vectors = inverse.eigenpairs(4, start)
+    values, vectors = inverse.nearest(4, start, BESIDE * mode.rate)
     chosen = int(np.argmin(np.abs(values - value)))
     partner = neighbour(values, chosen)
     fine = replace(

@@ -78,6 +78,10 @@ class IteratedInverse:
             raise ToleranceError(residual, RESIDUAL, remedy)
         return np.array([value], complex), vector[:, None].astype(complex)
 
+    def nearest(self, n: int, start: Any, apart: float) -> tuple[Complex, Complex]:
+        """As `eigenpairs`, which finds no neighbours."""
+        return self.eigenpairs(n, start)
+
     def transposed(self) -> IteratedInverse:
         """That of the transposed matrix, of the same factors."""
         return IteratedInverse(self.inverse.transposed())

@@ -149,6 +149,18 @@ class Refinement:
             return modes
         raise self.failure(modes)
 
+    def fewer(self, modes: list[Mode]) -> str:
+        """Fewer eigenvalues, and how many where the slowest of all stand still.
+
+        Right of an essential spectrum truncations have modes that move to it slowly,
+        and among which those of L, if there are more, would be told much later.
+        """
+        steady = itertools.takewhile(same_branch, modes)
+        n = sum(mode.count for mode in steady)
+        if not 0 < n < self.n:
+            return "ask for fewer eigenvalues"
+        return f"ask for fewer eigenvalues (the slowest {n} are resolved)"
+
     def failure(self, modes: list[Mode]) -> ToleranceError:
         """How far the modes are from being known, and what it would take."""
         remedy = REMEDY
@@ -157,8 +169,8 @@ class Refinement:
                 f"at noise {self.discretisation.noise:g} it takes work of "
                 f"{self.work.required:.2g} or more, where {self.work.allowed:.2g} is "
                 "allowed: choose a larger noise (an isotropic potential has an "
-                "EnergyProcess as its limit of little noise), enlarge `tolerance`, ask "
-                "for fewer eigenvalues or raise `work_limit`"
+                "EnergyProcess as its limit of little noise), enlarge `tolerance`, "
+                f"{self.fewer(modes)} or raise `work_limit`"
             )
         return ToleranceError(worst(modes), max(self.tolerance, self.largest), remedy)
 
