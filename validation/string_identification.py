@@ -83,8 +83,11 @@ def laid(case: Case, length: float, edge: float) -> tuple[fibre.LayDown, float]:
     return found, time.process_time() - began
 
 
-def campbell(eta: np.ndarray, ds: float, zone: float) -> float:
-    """CV of zones in a web of such fibres at uniform places across the belt."""
+def campbell(eta: np.ndarray, ds: float, zone: float, slow: float) -> float:
+    """CV of zones in a web of such fibres at uniform places across the belt.
+
+    `slow` is the speed of the belt over that of the fibre.
+    """
     # Pieces much shorter than a zone, of which each counts in one.
     parts = max(1, round(PIECES * ds / zone))
     share = (np.arange(parts) + 0.5) / parts
@@ -97,7 +100,7 @@ def campbell(eta: np.ndarray, ds: float, zone: float) -> float:
         _, counts = np.unique(along * MANY + across, return_counts=True)
         total += float(((ds / parts * counts) ** 2).sum()) / OFFSETS**2
     length = ds * (len(eta) - 1)
-    return float(np.sqrt(SPACING * BELT / SPEED * total / length) / zone)
+    return float(np.sqrt(SPACING * slow * total / length) / zone)
 
 
 def of_model(found: fp.Identification, zone: float) -> tuple[float, float]:
@@ -106,7 +109,7 @@ def of_model(found: fp.Identification, zone: float) -> tuple[float, float]:
     (sample,) = Surrogate(curve, 5).pieces(found.model)
     gamma = np.stack(curve.curve.position(curve.arclengths[0]), axis=-1)
     values = [
-        campbell(sample.xi[:, number] + gamma, curve.ds, zone)
+        campbell(sample.xi[:, number] + gamma, curve.ds, zone, curve.curve.speed)
         for number in range(sample.xi.shape[1])
     ]
     return float(np.mean(values)), float(np.std(values, ddof=1))
@@ -160,7 +163,8 @@ def webs_of(found: fp.Identification) -> list[dict[str, Any]]:
     rows = []
     for zone, (cv, error) in zip(ZONES, web_of(found), strict=True):
         mean, spread = of_model(found, zone)
-        own = campbell(found.data.eta, found.data.ds, zone)
+        data = found.data
+        own = campbell(data.eta, data.ds, zone, data.curve.speed)
         rows.append({
             "model": name_of(found), "zone (m)": zone, "CV, string": own,
             "CV, model": mean, "± of one": spread, "CV, laid web": cv, "± of it": error,

@@ -17,6 +17,7 @@ __all__ = [
     "oseen",
     "oseen_slopes",
     "pull_chain",
+    "shaking",
 ]
 
 # Reynolds numbers up to which Oseen's expansion holds, and from which the boundary
@@ -171,6 +172,36 @@ def drag_slopes(drag, velocity, tangent, force, slope):
     """f and ∂f/∂v for velocities of the air past the fibre, (n, 3) and (n, 3, 3)."""
     for i in range(velocity.shape[0]):
         _pull(drag, velocity[i], tangent[i], force[i], slope[i])
+
+
+@njit(cache=True, error_model="numpy")
+def shaking(drag, velocity, tangent, strengths, out):
+    """L D (n, 3, 3): L = ∂f/∂v, and D of three strengths (3, n) of fluctuations.
+
+    These are along the fibre, along the velocity across it, and along the normal of
+    both; of air that does not pass the last holds for both directions across.
+    """
+    force, slope, drawn = np.empty(3), np.empty((3, 3)), np.empty((3, 3))
+    for i in range(velocity.shape[0]):
+        v, t = velocity[i], tangent[i]
+        _pull(drag, v, t, force, slope)
+        moving = v[0] * t[0] + v[1] * t[1] + v[2] * t[2]
+        square = 0.0
+        for c in range(3):
+            square += (v[c] - moving * t[c]) ** 2
+        normal = strengths[2, i]
+        along = strengths[0, i] - normal
+        flow = (strengths[1, i] - normal) / max(square, SMALLEST)
+        for c in range(3):
+            for d in range(3):
+                across = (v[c] - moving * t[c]) * (v[d] - moving * t[d])
+                drawn[c, d] = along * t[c] * t[d] + flow * across
+            drawn[c, c] += normal
+        for c in range(3):
+            for d in range(3):
+                out[i, c, d] = (
+                    slope[c, 0] * drawn[0, d] + slope[c, 1] * drawn[1, d]
+                ) + slope[c, 2] * drawn[2, d]
 
 
 @njit(cache=True, error_model="numpy")

@@ -30,18 +30,22 @@ def _located(planes, x):
 
 @njit(cache=True, error_model="numpy")
 def between_planes(axes, values, r, out):
-    """Values at r (n, 3), into out (n, m); NaN outside of the grid.
+    """Values at r (n, 3), into out (n, m); returns the first place outside, or −1.
 
-    axes: three rising arrays, with one number where nothing depends on a coordinate;
-    values (n1, n2, n3, m).
+    There they are NaN. axes: three rising arrays, with one number where nothing depends
+    on a coordinate; values (n1, n2, n3, m).
     """
     first, second, third = axes
+    outside = -1
     for place in range(r.shape[0]):
         i, x = _located(first, r[place, 0])
         j, y = _located(second, r[place, 1])
         k, z = _located(third, r[place, 2])
-        out[place] = 0.0 if min(i, j, k) >= 0 else np.nan
-        if min(i, j, k) < 0:
+        inside = min(i, j, k) >= 0
+        for number in range(out.shape[1]):
+            out[place, number] = 0.0 if inside else np.nan
+        if not inside:
+            outside = place if outside < 0 else outside
             continue
         for corner in range(8):
             a, b, c = corner >> 2, (corner >> 1) & 1, corner & 1
@@ -50,3 +54,4 @@ def between_planes(axes, values, r, out):
             if weight != 0.0:
                 for number in range(out.shape[1]):
                     out[place, number] += weight * values[i + a, j + b, k + c, number]
+    return outside

@@ -86,14 +86,15 @@ class TableField:
         if self.points.axes is None:
             wanted = [AXES.index(name) for name in self.points.names]
             found = np.asarray(self._scattered(r[:, wanted]))
+            finite = np.isfinite(found.reshape(len(r), -1)).all(axis=1)
+            outside = -1 if finite.all() else int(finite.argmin())
         else:
             axes, values = self._planes
             out = np.empty((len(r), values.shape[3]))
-            between_planes(axes, values, np.ascontiguousarray(r), out)
-            found = out.reshape(len(r), *self.values.shape[len(self.points.axes) :])
-        outside = ~np.isfinite(found.reshape(len(r), -1)).all(axis=1)
-        if outside.any():
-            raise FlowRangeError(t, tuple(r[outside.argmax()].tolist()))
+            outside = between_planes(axes, values, np.ascontiguousarray(r), out)
+            found = out if self.values.ndim > len(self.points.names) else out[:, 0]
+        if outside >= 0:
+            raise FlowRangeError(t, tuple(r[outside].tolist()))
         return found
 
     @cached_property

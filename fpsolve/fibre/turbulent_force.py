@@ -7,6 +7,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from fpsolve._kernels.drag import shaking
 from fpsolve._support.arrays import Array
 from fpsolve._support.checks import (
     check_flag,
@@ -103,15 +104,9 @@ class TurbulentForce:
         tangent, wind = node_tangents(r), air.at(r, t) - v
         across = wind - np.einsum("ni,ni->n", wind, tangent)[:, None] * tangent
         speed = np.linalg.norm(across, axis=1)
-        along, flow, normal = self._strengths(air, r, speed, t)
-        # Where nothing passes both directions across are the same.
-        passing = np.where(speed > 0, speed, 1.0)
-        across = across / passing[:, None]
-        drawn = normal[:, None, None] * np.eye(3)
-        for strength, axis in ((along - normal, tangent), (flow - normal, across)):
-            drawn += strength[:, None, None] * axis[:, :, None] * axis[:, None, :]
-        _, slope = air.pull(string.diameter, wind, tangent)
-        return np.asarray(slope @ drawn)
+        strengths, out = self._strengths(air, r, speed, t), np.empty((*r.shape, 3))
+        shaking(air.drag(string.diameter), wind, tangent, strengths, out)
+        return out
 
     def _strengths(self, air: AirFlow, r: Array, speed: Array, t: float) -> Array:
         """Of the fluctuations along the fibre, the flow and their normal, (3, n)."""
