@@ -63,10 +63,16 @@ Unit = Annotated[
     typer.Option(help="Of the lengths in the file: m, cm or mm.", metavar="WORD",
                  autocompletion=of(*UNITS)),
 ]  # fmt: skip
+Pixel = Annotated[
+    float | None,
+    _length("Size of a pixel, where the table is in pixels.",
+            show_default="the table is in --unit"),
+]  # fmt: skip
 PositionError = Annotated[
     float | None,
-    _length("Standard deviation of the coordinates of a point.", show_default="0"),
-]
+    _length("Standard deviation of the coordinates of a point.",
+            show_default="that of rounding to the digits of the table"),
+]  # fmt: skip
 Model = Annotated[
     str, typer.Option(help="smooth, basic or both.", metavar="WORD",
                       autocompletion=of(*MODELS, _BOTH))
@@ -102,6 +108,7 @@ def identify(
     belt_speed: BeltSpeed = None,
     ds: Ds = None,
     unit: Unit = "m",
+    pixel: Pixel = None,
     position_error: PositionError = None,
     model: Model = "smooth",
     method: Method = "likelihood",
@@ -123,14 +130,14 @@ def identify(
         frame.claim(*names, f"{_NAME}.html", *_pictures())
         given = Measured(
             curve, belt_speed, ds, unit, position_error, nozzle, angular_speed, radius,
-            phase,
+            phase, pixel,
         )  # fmt: skip
         fibre = measured_fibre(given)
         used = command_line(
             "identify", *([] if curve is None else [str(curve)]),
-            belt_speed=belt_speed, ds=ds, unit=unit, position_error=position_error,
-            model=model, method=method, nozzle=nozzle, angular_speed=angular_speed,
-            radius=radius, phase=phase, seed=seed,
+            belt_speed=belt_speed, ds=ds, unit=unit, pixel=pixel,
+            position_error=position_error, model=model, method=method, nozzle=nozzle,
+            angular_speed=angular_speed, radius=radius, phase=phase, seed=seed,
         )  # fmt: skip
         if model == _BOTH:
             _finish_both(frame, fibre, method, seed, used)

@@ -16,6 +16,9 @@ __all__ = ["Measured", "measured_fibre"]
 
 # Files of results, which have units and a reference curve.
 SAVED = (".nc", ".zarr")
+# Part of the distance from the reference curve below which the rest must be for the
+# fibre to drift away from it: what is known of it then is that the curve is wrong.
+_REST = 0.3
 # Spread about the reference curve in metres, beyond which no process throws fibres.
 _SPREADS = (1e-4, 0.5)
 
@@ -32,6 +35,7 @@ class Measured(NamedTuple):
     angular_speed: float | None
     radius: float | None
     phase: float | None
+    pixel: float | None = None
 
 
 def measured_fibre(given: Measured) -> FibreCurve:
@@ -45,20 +49,20 @@ def measured_fibre(given: Measured) -> FibreCurve:
     FileNotFoundError, FileFormatError
         If there is no table, or it is none.
     """
-    from fpsolve._support.checks import check_one_of
     from fpsolve.paths.fibres.fibre_curve import FibreCurve
 
     if given.table is not None and given.table.suffix in SAVED:
         return _saved(given.table, given)
     given = _completed(given)
-    check_one_of("--unit", given.unit, UNITS)
     curve = _curve(given)
+    error = given.position_error
+    known = {} if error is None else {"position_error": error}
     fibre = FibreCurve.read_csv(
-        _table(given.table), given.ds, unit=1 / UNITS[given.unit],
-        position_error=given.position_error or 0.0, curve=curve,
-    )  # fmt: skip
+        _table(given.table), given.ds, unit=1 / _unit(given), curve=curve, **known
+    )
     if curve is None:
         fibre = _fitted(fibre, given)
+    _check_drift(fibre, given)
     _check_spread(fibre, given)
     return fibre
 
@@ -80,7 +84,7 @@ def _saved(path: Path, given: Measured) -> FibreCurve:
             "write its points to a table and give `--belt-speed`."
         )
     names = ("belt_speed", "ds", "position_error", "nozzle", "angular_speed", "radius",
-             "phase")  # fmt: skip
+             "phase", "pixel")  # fmt: skip
     told = [name for name in names if getattr(given, name) is not None]
     if told:
         raise ValueError(
@@ -109,6 +113,21 @@ def _completed(given: Measured) -> Measured:
     return given._replace(
         **{name: value for name, value in known.items() if getattr(given, name) is None}
     )
+
+
+def _unit(given: Measured) -> float:
+    """Metres that a length of one in the table is."""
+    from fpsolve._support.checks import check_one_of, check_positive
+
+    check_one_of("--unit", given.unit, UNITS)
+    if given.pixel is None:
+        return UNITS[given.unit]
+    if given.unit != "m":
+        raise ValueError(
+            f"`--unit` must not be given beside `--pixel`, got {given.unit}; the table "
+            "is in pixels."
+        )
+    return check_positive("--pixel", given.pixel)
 
 
 def _table(path: Path | None) -> Path:
@@ -164,6 +183,28 @@ def _fitted(fibre: FibreCurve, given: Measured) -> FibreCurve:
     return fit_curve(fibre, turning, speed, motion=motion).fibre
 
 
+def _check_drift(fibre: FibreCurve, given: Measured) -> None:
+    """Raise ValueError if ξ of the longest fibre is little but a straight line."""
+    import numpy as np
+
+    xi = max(fibre.deviations, key=len)
+    xi = xi - xi.mean(axis=0)
+    s = fibre.ds * (np.arange(len(xi)) - 0.5 * (len(xi) - 1))
+    drift = s @ xi / (s @ s)
+    rest = np.linalg.norm(xi - np.outer(s, drift))
+    if not rest < _REST * np.linalg.norm(xi):
+        return
+    # Of the points themselves: γ moves by -v along the belt.
+    along, across = drift[0] - (given.belt_speed or 0.0), drift[1]
+    raise ValueError(
+        f"`--belt-speed` must be that of the fibre, got {given.belt_speed:g}, with "
+        f"which it drifts away from its curve: its points move by {along:.3g} m along "
+        f"and {across:.3g} m across in a metre of fibre. They must move by minus the "
+        "belt speed along and by nothing across: give another, turn the axis round, or "
+        "exchange the columns."
+    )
+
+
 def _check_spread(fibre: FibreCurve, given: Measured) -> None:
     """Raise ValueError unless ξ is as wide as fibres are thrown."""
     import numpy as np
@@ -175,5 +216,6 @@ def _check_spread(fibre: FibreCurve, given: Measured) -> None:
         raise ValueError(
             f"`--unit` and `--belt-speed` must be those of the fibre, got {given.unit} "
             f"and {given.belt_speed:g}, with which it lies {spread:.3g} m from its "
-            f"reference curve in root mean square, not {low:g} to {high:g} m."
+            f"reference curve in root mean square, not {low:g} to {high:g} m; the belt "
+            "carries a fibre towards lower x."
         )

@@ -141,6 +141,35 @@ def test_millimetres_model_and_method_are_options(
     assert fibre.curve == fp.MovingBelt(0.1)
 
 
+@pytest.mark.parametrize("across", [False, True])
+def test_a_fibre_that_drifts_from_its_curve_is_told_how_its_points_move(
+    short, tmp_path, across
+):
+    eta = short[:, ::-1] if across else short * [-1, 1]
+    np.savetxt(tmp_path / "turned.csv", eta, "%.12f", ",", header="x,y", comments="")
+    given = Measured(tmp_path / "turned.csv", 0.1, 5e-4, "m", None, None, None, None,
+                     None)  # fmt: skip
+    # 600 mm of fibre are 60 mm of belt, with ends that lie 5 mm anywhere.
+    along = (
+        r"move by -0\.00\d+ m along and -0\.1\d* m|move by -0\.00\d+ m along and -0\.09"
+    )
+    said = along if across else r"move by (0\.09|0\.1)\d* m along"
+    with pytest.raises(ValueError, match=said):
+        measured_fibre(given)
+
+
+def test_pixels_are_metres_and_their_rounding_is_the_error_of_points(short, tmp_path):
+    size = 2e-5
+    np.savetxt(tmp_path / "pixels.csv", np.round(short / size), "%d", ",")
+    given = Measured(tmp_path / "pixels.csv", 0.1, 5e-4, "m", None, None, None, None,
+                     None, size)  # fmt: skip
+    fibre = measured_fibre(given)
+    # A number that is cut at a pixel is uniform in it.
+    assert fibre.position_error == pytest.approx(size / 12**0.5, rel=1e-12)
+    np.testing.assert_allclose(fibre.eta, short, rtol=0, atol=size / 2 * (1 + 1e-9))
+    assert measured_fibre(given._replace(position_error=3e-5)).position_error == 3e-5
+
+
 @pytest.fixture
 def nothing_is_computed(monkeypatch):
     """Mistakes are told before; what gets as far as that fails."""
@@ -159,6 +188,9 @@ OF_FIBRE = ("--belt-speed", 0.1, "--unit", "mm", "--ds", 5e-4)
         (("--belt-speed", 0.1, "--ds", 5e-4), "or the unit of the points"),
         (("--belt-speed", 0.1, "--ds", 0.5), "`--unit` and `--belt-speed` must be"),
         ((*OF_FIBRE, "--unit", "inch"), "`--unit` must be one of"),
+        ((*OF_FIBRE, "--pixel", 1e-5), "`--unit` must not be given beside `--pixel`"),
+        (("--belt-speed", 0.1, "--ds", 5e-4, "--pixel", 0), "`--pixel` must be posit"),
+        ((*OF_FIBRE, "--belt-speed", 0.3), "got 0.3, with which it drifts"),
         ((*OF_FIBRE, "--belt-speed", 3), "strictly between -1 and 1"),
         ((*OF_FIBRE, "--ds", "nan"), "`ds` must be positive"),
         ((*OF_FIBRE, "--ds", 1e-2), "in another unit"),
@@ -192,10 +224,11 @@ def test_a_mistake_is_told_and_leaves_no_file(
         (b"a,b\n1,2\n2,3\n", "its columns must be eta1, eta2 or x, y"),
         (b"x,y\n1,2\n2\n", "row 2 is no 2 numbers"),
         (b"x,y\n1,2\n2,up\n", "row 2 is no 2 numbers"),
-        (b"x,y\n" + b"1,2\nnan,3\n" * 9, "must be finite"),
+        (b"x,y\n" + b"1,2\nnan,3\n" * 9, "row 2 must be finite, and is ['nan', '3']"),
+        (b"x;y\n" + b"".join(b"%d,5;0\n" % n for n in range(50)), "by 2 m along"),
         (b"x,y\n1,2\n", "five|5"),
         (b"\x89HDF\xff\xfe", "it is not text in UTF-8"),
-        (b"x,y\n" + b"".join(b"%.2f,0\n" % (0.4 * n) for n in range(50)), "100"),
+        (b"x,y\n" + b"".join(b"%.2f,0\n" % (0.4 * n) for n in range(50)), "by 0.8 m"),
     ],
 )
 def test_a_table_that_is_none_is_told(

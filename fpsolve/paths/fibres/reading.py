@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import csv
+import math
 from collections.abc import Mapping
+from decimal import Decimal
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -25,15 +27,17 @@ SAME_STEP = 1e-4
 
 
 class Table(NamedTuple):
-    """Points of fibres, and their arclengths where they are known."""
+    """Points of fibres, their arclengths where they are known, and their rounding."""
 
     pieces: list[Array]
     s: list[Array] | None
+    rounding: float = 0.0
 
     def scaled(self, unit: float) -> Table:
         """The same in another unit of length."""
         s = None if self.s is None else [one / unit for one in self.s]
-        return Table([piece / unit for piece in self.pieces], s)
+        pieces = [piece / unit for piece in self.pieces]
+        return Table(pieces, s, self.rounding / unit)
 
     def step(self, ds: float | None) -> float | None:
         """The distance of points that are equally far apart; None if they are not.
@@ -79,24 +83,44 @@ def equal_step(s: Array, name: str) -> float:
 
 
 def read_csv(path: str | Path) -> Table:
-    """Columns of a file, comma, semicolon, tab or space between them."""
+    """Columns of a file, comma, semicolon, tab or space between them.
+
+    Between semicolons or tabs a comma is a decimal one.
+    """
     place = check_path("path", path)
     try:
         text = place.read_text("utf-8-sig")
     except UnicodeDecodeError:
         raise FileFormatError(place, "it is not text in UTF-8") from None
     lines = [
-        line.replace(";", ",").replace("\t", ",")
+        _with_commas(line)
         for line in text.splitlines()
         if line.strip() and not line.lstrip().startswith("#")
     ]
-    lines = [line if "," in line else ",".join(line.split()) for line in lines]
     rows = [[word.strip() for word in row] for row in csv.reader(lines)]
     if not rows:
         raise FileFormatError(place, "it holds no row of numbers")
     header = ["x", "y"] if _is_numbers(rows[0]) else rows.pop(0)
     columns = _columns(rows, header, place)
-    return _table(columns, place)
+    table = _table(columns, place)
+    named = [name.lower() in PAIRS[0] + PAIRS[1] for name in header]
+    words = [word for row in rows for word, own in zip(row, named, strict=True) if own]
+    return table._replace(rounding=rounding_of(words))
+
+
+def rounding_of(words: list[str]) -> float:
+    """q/√12, the standard deviation of what rounding to the digits q takes away."""
+    digits = [Decimal(word).as_tuple().exponent for word in words]
+    # Not the least: trailing zeros may be left out, and small numbers have more.
+    usual = float(np.median(np.array(digits, dtype=np.float64)))
+    return math.pow(10.0, min(usual, 0.0)) / math.sqrt(12)
+
+
+def _with_commas(line: str) -> str:
+    for separator in (";", "\t"):
+        if separator in line:
+            return line.replace(",", ".").replace(separator, ",")
+    return line if "," in line else ",".join(line.split())
 
 
 def read_dataset(dataset: xr.Dataset | str | Path) -> Table:
@@ -132,6 +156,14 @@ def _columns(rows: list[list[str]], header: list[str], place: Path) -> dict[str,
                 place, f"row {number} is no {len(header)} numbers: {shown(row)}"
             )
     values = np.array(rows, dtype=np.float64).reshape(len(rows), len(header))
+    gaps = np.flatnonzero(~np.isfinite(values).all(axis=1))
+    if len(gaps):
+        raise FileFormatError(
+            place,
+            f"row {gaps[0] + 1} must be finite, and is {shown(rows[gaps[0]])}; leave "
+            "out points that are not known, and number the fibre on either side of a "
+            "gap in a column `fibre`",
+        )
     return dict(zip((name.lower() for name in header), values.T, strict=True))
 
 

@@ -22,6 +22,9 @@ if TYPE_CHECKING:
 
 __all__ = ["Sources"]
 
+# Rounding of a table below this part of Δs is that of any number.
+NEGLIGIBLE = 1e-10
+
 
 class Sources(ABC):
     """What makes a fibre curve of which its class takes points, ds and options."""
@@ -112,12 +115,14 @@ class Sources(ABC):
         unit : float, optional
             Lengths in the file are divided by it: 1e-3 of metres gives millimetres.
         **options
-            As for `FibreCurve`.
+            As for `FibreCurve`. The position error is by default what rounding to the
+            digits of the table costs, the last one over √12.
 
         Raises
         ------
         ValueError
-            If a column is missing, a line is no row of numbers, or ds is not known.
+            If a column is missing, a line is no row of finite numbers, or ds is not
+            known.
         """
         return cls._of_table(reading.read_csv(path), ds, unit, options)
 
@@ -145,6 +150,8 @@ class Sources(ABC):
         if scaled.s is not None:
             options = {"s_start": [float(s[0]) for s in scaled.s], **options}
         step = scaled.step(ds)
+        if step is not None and not scaled.rounding < NEGLIGIBLE * step:
+            options = {"position_error": scaled.rounding, **options}
         if step is not None:
             return cls(scaled.pieces, step, **options)
         ds = check_positive("ds", ds)
