@@ -23,6 +23,10 @@ BEYOND, MORE = 12.0, 40
 LARGEST = 1e200
 # Of a half axis.
 PRECISION = 1e-2
+# Where the ellipse is nearly a circle its polynomials grow with n, (half axes / focus)^n,
+# and it takes this many terms per unit of half axes times arclength; where it is flatter
+# than FLAT times, those above are enough.
+ROUND, FLAT = 2.2, 4.0
 # Foci of the ellipse stay this share of the longer half axis from the centre.
 FLATTEST = 0.35
 
@@ -157,13 +161,15 @@ def half_axes(counts, index, equation):
 
 
 @njit(cache=True, error_model="numpy")
-def chebyshev_coefficients(shift, argument, sign):
+def chebyshev_coefficients(shift, argument, sign, least):
     """e^{shift} (2 − δ_n0) I_n(argument), or J_n for sign −1, by Miller's recurrence.
+
+    For n up to where they are negligible, and up to `least`.
 
     Backwards from where they are negligible, and normalised by the sums
     I₀ + 2 Σ I_n = e^x or J₀ + 2 Σ J_2n = 1.
     """
-    n_terms = int(argument + BEYOND * argument ** (1.0 / 3.0)) + MORE
+    n_terms = int(max(argument + BEYOND * argument ** (1.0 / 3.0), least)) + MORE
     values = np.zeros(n_terms + 1)
     above, here, total = 0.0, 1e-200, 0.0
     for n in range(n_terms, -1, -1):
@@ -195,7 +201,8 @@ def advance_sector(c, counts, index, equation, ds, tolerance):
     square = real**2 - imaginary**2
     focus = np.sqrt(max(abs(square), (FLATTEST * max(real, imaginary)) ** 2))
     sign = 1.0 if square > 0 else -1.0
-    factors = chebyshev_coefficients(-real * ds, focus * ds, sign)
+    least = ROUND * (real + imaginary) * ds if real < FLAT * imaginary else 0.0
+    factors = chebyshev_coefficients(-real * ds, focus * ds, sign, least)
     gain, centre = 1.0 / focus, -real
     older, newer, total = c.copy(), np.zeros_like(c), np.zeros_like(c)
     first = gain, -gain * centre, 0.0
