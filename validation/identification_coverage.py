@@ -207,8 +207,13 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--quick", action="store_true", help="2 cases of 11")
     parser.add_argument("--cases", type=int, nargs="*", help="some of the full ones")
+    parser.add_argument("--misspecified", action="store_true",
+                        help="only fibres that are not of the model")  # fmt: skip
     options = parser.parse_args()
     report = Report("identification_coverage", options.quick)
+    if options.misspecified:
+        show_misspecified(report)
+        return
     cases = QUICK if options.quick else FULL
     if options.cases:
         cases = [FULL[number] for number in options.cases]

@@ -111,6 +111,29 @@ def test_a_table_of_text_is_read_whatever_is_between_its_columns(mark, tmp_path)
     np.testing.assert_allclose(metres.eta, 1e3 * points, atol=1e-8)
 
 
+@pytest.mark.parametrize("mark", [";", "\t"])
+def test_commas_between_semicolons_are_decimal_ones(mark, tmp_path):
+    points = np.round(circle(60), 4)
+    rows = [mark.join(f"{x:.4f}" for x in point).replace(".", ",") for point in points]
+    (tmp_path / "fibre.csv").write_text(f"x{mark}y\n" + "\n".join(rows))
+    fibre = fp.FibreCurve.read_csv(tmp_path / "fibre.csv", 0.1)
+    np.testing.assert_array_equal(fibre.eta, points)
+
+
+def test_the_rounding_of_a_table_is_the_error_of_its_points(tmp_path):
+    straight = np.outer(0.1 * np.arange(60), (0.6, 0.8))
+    # Rounded to four digits, chords are longer than Δs by up to 1e-4: no misfit.
+    rows = "\n".join(f"{x:.4f},{y:.4f}" for x, y in 1.00037 * straight)
+    (tmp_path / "fibre.csv").write_text(rows)
+    ds = 0.1 * 1.00037
+    fibre = fp.FibreCurve.read_csv(tmp_path / "fibre.csv", ds)
+    assert fibre.position_error == pytest.approx(1e-4 / 12**0.5, rel=1e-12)
+    metres = fp.FibreCurve.read_csv(tmp_path / "fibre.csv", 1e3 * ds, unit=1e-3)
+    assert metres.position_error == pytest.approx(0.1 / 12**0.5, rel=1e-12)
+    with pytest.raises(ValueError, match="no fibre is shorter than its chord"):
+        fp.FibreCurve.read_csv(tmp_path / "fibre.csv", ds, position_error=0.0)
+
+
 def test_a_table_holds_several_fibres_by_their_numbers(tmp_path):
     rows = ["fibre,eta1,eta2"]
     for number, n in ((1, 20), (2, 30)):
