@@ -61,7 +61,7 @@ def check_case(report: Report, case: Case, n_fibres: int) -> None:
     found = np.array([maximum(Likelihood.of(fibre)).at[:3] for fibre in fibres])
     away = found - [1.0, 1.0, math.log(model.noise)]
     spread = np.sqrt(np.mean(away**2, axis=0))
-    information = np.mean([informations(fibre) for fibre in fibres], axis=0)
+    information = np.mean([fisher_information(fibre) for fibre in fibres], axis=0)
     bounds = np.append(model.noise / np.sqrt(information), 1 / math.sqrt(2 * n))
     ratios = spread / bounds
     of_sigma = float(np.sqrt(np.mean(ratios[:2] ** 2)))
@@ -84,7 +84,7 @@ def check_case(report: Report, case: Case, n_fibres: int) -> None:
         report.check(f"{label}: ln A over its bound", ratios[2], ">", 1 - chance)
 
 
-def informations(fibre: fp.FibreCurve) -> np.ndarray:
+def fisher_information(fibre: fp.FibreCurve) -> np.ndarray:
     """∫ (ξ1 sin α)² ds and ∫ (ξ2 cos α)² ds, by the middles of chords."""
     (alpha,), (xi,) = fibre.angles, fibre.deviations
     middle = 0.5 * (xi[1:] + xi[:-1])
