@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 import matplotlib as mpl
-from tables import NOISES, OURS, RESULTS, Tables
+from tables import NOISES, OURS, RESULTS, SECTORS, Tables
 
 mpl.use("Agg")
 
@@ -29,6 +29,8 @@ STYLES = {
     "semi_lagrangian, extrapolated": ("#56B4E9", "s"),
     "drift_kick": ("#D55E00", "D"),
     "drift_kick, extrapolated": ("#E69F00", "^"),
+    "drift_kick, Fourier": ("#7A0403", "H"),
+    "spectral_solve, sectors": ("#9467BD", "8"),
     "Fourier + RK4 (numpy)": ("#009E73", "v"),
     "Dedalus 3": ("#000000", "P"),
     "py-pde": ("#CC79A7", "X"),
@@ -52,17 +54,19 @@ def digest(parts: tuple[str, ...], folder: Path, prefix: str) -> str:
 
 
 def family(solver: str) -> str:
-    """Legend entry: our scheme, and whether it was extrapolated; or the peer."""
-    if not solver.startswith(OURS):
+    """Legend entry: our scheme, and how it was made more accurate; or the peer."""
+    if not solver.startswith((*OURS, SECTORS)):
         return solver
-    name = solver.split(" (")[0]
-    return f"{name}, extrapolated" if "extrapolated" in solver else name
+    name, words = solver.split(" (")[0], solver.partition(" (")[2]
+    kinds = {"Fourier": "Fourier", "extrapolated": "extrapolated", "sectors": "sectors"}
+    kind = next((kinds[word] for word in kinds if word in words), None)
+    return f"{name}, {kind}" if kind else name
 
 
 def plot(axes: Axes, name: str, x: list[float], y: list[float], line: str = "") -> None:
     """Points of one family: ours filled, the peers open."""
     colour, marker = STYLES[name]
-    fill = colour if name.startswith(OURS) or marker == "+" else "white"
+    fill = colour if name.startswith((*OURS, SECTORS)) or marker == "+" else "white"
     axes.loglog(
         *(x, y, marker + line),
         color=colour,
@@ -89,7 +93,7 @@ def draw_errors(axes: Axes, rows: list[dict[str, Any]], noise: float) -> None:
         if not mine:
             continue
         best = front(mine)
-        style = "-" if name.startswith(OURS) else "--"
+        style = "-" if name.startswith((*OURS, SECTORS)) else "--"
         x, y = [row["cpu"] for row in best], [row["l1_error"] for row in best]
         axes.loglog(x, y, style, color=STYLES[name][0], linewidth=0.8)
         plot(axes, name, [row["cpu"] for row in mine], [r["l1_error"] for r in mine])
@@ -104,12 +108,21 @@ def errors_figure(tables: Tables) -> Figure:
         for noise in NOISES
         if (tables.folder / f"{tables.prefix}-noise-{noise:g}.json").exists()
     ]
-    figure = Figure(figsize=(2 + 3.1 * len(noises), 4.6), layout="constrained")
-    panels = figure.subplots(1, len(noises), sharey=True, squeeze=False)[0]
-    for axes, noise in zip(panels, noises, strict=True):
+    columns = min(len(noises), 3)
+    n_rows = -(-len(noises) // columns)
+    size = (2 + 3.1 * columns, 1.2 + 3.4 * n_rows)
+    figure = Figure(figsize=size, layout="constrained")
+    panels = figure.subplots(n_rows, columns, sharex=True, sharey=True, squeeze=False)
+    shown, left = panels.flat[: len(noises)], panels.flat[len(noises) :]
+    for axes, noise in zip(shown, noises, strict=True):
         draw_errors(axes, tables.rows(noise), noise)
-    panels[0].set_ylabel(r"$L^1$ error of $p(\xi, \alpha, s = 1)$")
-    legend(figure, panels, 4)
+    for axes in left:
+        axes.set_axis_off()
+    for axes in shown:
+        axes.tick_params(labelbottom=True)
+    for axes in panels[:, 0]:
+        axes.set_ylabel(r"$L^1$ error of $p(\xi, \alpha, s = 1)$")
+    legend(figure, shown, 4)
     return figure
 
 
@@ -129,10 +142,18 @@ def legend(figure: Figure, panels: Iterable[Axes], columns: int) -> None:
 
 def draw_cells(axes: Axes, rows: list[dict[str, Any]]) -> None:
     """Rate of whole steps against the number of cells."""
-    for name in OURS:
+    for name in (*OURS, "drift_kick (Fourier)"):
         mine = [row for row in rows if row["scheme"] == name]
+        if not mine:
+            continue
         cells = [row["n"] ** 3 for row in mine]
-        plot(axes, name, cells, [row["cells_per_second"] / 1e6 for row in mine], "-")
+        plot(
+            axes,
+            family(name),
+            cells,
+            [row["cells_per_second"] / 1e6 for row in mine],
+            "-",
+        )
     axes.set(xlabel="cells", ylabel="whole steps, Mcells / CPU s", title="cells")
     axes.set(yscale="linear", ylim=(0, None))
 

@@ -64,6 +64,7 @@ def drift_kick_rates(shape: tuple[int, int, int]) -> list[KernelRate]:
     """Translation (both forms), angle step and whole steps of `drift_kick`."""
     plain = make_scheme(case("drift_kick", shape, DS))
     positive = make_scheme(case("drift_kick", shape, DS, positive=True))
+    fourier = make_scheme(case("drift_kick", shape, DS, translation="fourier"))
     p = make_start(plain.grid)
     out = np.empty_like(p)
     plain.kick(p, 0.0, DS, out)
@@ -82,6 +83,11 @@ def drift_kick_rates(shape: tuple[int, int, int]) -> list[KernelRate]:
             lambda: positive.translate(p, 0.0, DS, out),
         ),
         rate(
+            "translation in ξ, Fourier",
+            p.size,
+            lambda: fourier.translate(p, 0.0, DS, out),
+        ),
+        rate(
             "rotation and diffusion in α",
             p.size,
             lambda: plain.kick(p, 0.0, DS, out),
@@ -89,6 +95,7 @@ def drift_kick_rates(shape: tuple[int, int, int]) -> list[KernelRate]:
         ),
         whole_step("drift_kick", plain, p),
         whole_step("drift_kick (positive)", positive, p),
+        whole_step("drift_kick (Fourier)", fourier, p),
     ]
 
 

@@ -5,6 +5,7 @@
 Solves on every grid of the solver, from the smallest, and merges the section into
 results/benchmark-noise-0.3.json. A grid that is predicted to take more than `PATIENCE`
 CPU seconds, from the last one that was solved, is listed with the reason and not run.
+With `--more` rows that are there stay, and only settings without one are run.
 """
 
 from __future__ import annotations
@@ -21,7 +22,9 @@ from typing import Any
 
 from results import add_options, path_of, read_part, run_record, set_threads, write_part
 
-SOLVERS = ("ours", "pypde", "fipy", "dedalus", "fplanck", "fourier")
+SOLVERS = ("ours", "sectors", "pypde", "fipy", "dedalus", "fplanck", "fourier")
+NOISES = (0.1, 0.3, 1.0, 3.0, 10.0)
+OURS = {"ours": "ours", "sectors": "ours_sectors"}
 PATIENCE = 90.0
 # Of a solve: cells times steps, which are bounded by the spacing. Of the set-up: cells.
 SOLVE_POWER, SETUP_POWER = 4 / 3, 1.0
@@ -33,8 +36,9 @@ def parse() -> argparse.Namespace:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("--noise", type=float, default=1.0, choices=(0.3, 1.0, 3.0))
+    parser.add_argument("--noise", type=float, default=1.0, choices=NOISES)
     parser.add_argument("--solver", choices=SOLVERS, default="ours")
+    parser.add_argument("--more", action="store_true", help="only what is not there")
     add_options(parser)
     return parser.parse_args()
 
@@ -95,19 +99,24 @@ def row_of(result: Any, reference: Any, options: str) -> dict[str, Any]:
         "wall": result.wall,
         "setup": result.setup,
         "note": result.note,
+        "told": result.told,
     }
 
 
 def solve_all(
-    module: Any, problem: Any, reference: Any, settings: tuple[dict[str, Any], ...]
-) -> tuple[list[dict[str, Any]], list[dict[str, Any]]]:
+    module: Any, problem: Any, reference: Any, settings: tuple[dict[str, Any], ...],
+    kept: list[dict[str, Any]],
+) -> tuple[list[dict[str, Any]], list[dict[str, Any]]]:  # fmt: skip
     """Rows of the runs that were made, and reasons of those that were not."""
     from problem import LeftOutError
 
-    rows: list[dict[str, Any]] = []
+    rows = list(kept)
+    there = {key(row["options"], row["shape"]) for row in kept}
     left_out: list[dict[str, Any]] = []
     for setting in settings:
         options, shape = label(setting), setting.get("shape", (0,))
+        if key(options, shape) in there:
+            continue
         reason = reason_to_skip(rows, shape, options)
         if reason is None:
             try:
@@ -151,6 +160,25 @@ def alone(folder: Path) -> Iterator[None]:
         yield
 
 
+def key(options: str, shape: Any) -> tuple[Any, ...]:
+    """What tells runs of a solver apart."""
+    return (options, *shape)
+
+
+def kept_rows(
+    settings: tuple[dict[str, Any], ...], arguments: argparse.Namespace
+) -> list[dict[str, Any]]:
+    """Rows that `--more` keeps: those of the settings of this solver."""
+    part = f"noise-{arguments.noise:g}"
+    path = path_of(part, arguments.out, quick=arguments.quick)
+    if not (arguments.more and path.exists()):
+        return []
+    sections = read_part(part, arguments.out, quick=arguments.quick)["sections"]
+    rows = sections.get(arguments.solver, {"rows": []})["rows"]
+    wanted = {key(label(one), one.get("shape", (0,))) for one in settings}
+    return [row for row in rows if key(row["options"], row["shape"]) in wanted]
+
+
 def merge(
     section: dict[str, Any], setting: dict[str, Any], arguments: argparse.Namespace
 ) -> None:
@@ -175,14 +203,15 @@ def main() -> None:
     from timing import keep_memory
 
     keep_memory()
-    name = "ours" if arguments.solver == "ours" else f"peer_{arguments.solver}"
+    name = OURS.get(arguments.solver, f"peer_{arguments.solver}")
     module = importlib.import_module(name)
     problem = Problem(noise=arguments.noise)
     exact = reference.load(problem, quick=arguments.quick)
     machine = measure_machine(quick=True)
     settings = module.QUICK_RUNS if arguments.quick else module.runs(problem)
     print(f"A = {problem.noise:g}, {arguments.solver}")
-    rows, left_out = solve_all(module, problem, exact, settings)
+    kept = kept_rows(settings, arguments)
+    rows, left_out = solve_all(module, problem, exact, settings, kept)
     check(rows, quick=arguments.quick)
     section = {"machine": machine.to_dict(), "rows": rows, "left_out": left_out}
     setting = reference.settings(problem.noise, quick=arguments.quick)

@@ -10,6 +10,7 @@ cut off after the first half of their Fourier series.
 from __future__ import annotations
 
 import logging
+import math
 from importlib.metadata import version
 from typing import Any
 
@@ -33,12 +34,21 @@ SHAPES = (
     *((24, 24, 16), (32, 32, 24), (32, 32, 32), (40, 40, 32)),
     *((48, 48, 48), (64, 64, 64), (128, 128, 128)),
 )
+# As few or as many angles as ours at this noise.
+LEAN = {
+    0.1: ((48, 48, 64),),
+    0.3: ((56, 56, 56),),
+    1.0: ((36, 36, 16), (48, 48, 24)),
+    3.0: ((36, 36, 16), (48, 48, 16)),
+    10.0: ((36, 36, 8), (48, 48, 16)),
+}
 QUICK_RUNS = ({"shape": (16, 16, 16)},)
 
 
 def runs(problem: Problem) -> tuple[dict[str, Any], ...]:
     """Settings by growing cost."""
-    return tuple({"shape": shape} for shape in SHAPES)
+    shapes = sorted((*SHAPES, *LEAN[problem.noise]), key=math.prod)
+    return tuple({"shape": shape} for shape in shapes)
 
 
 def make_axes(shape: tuple[int, int, int]) -> tuple[np.ndarray, ...]:

@@ -8,6 +8,7 @@ whatever the noise.
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -23,16 +24,49 @@ SHAPES = (
     *((24, 24, 16), (32, 32, 24), (32, 32, 32), (40, 40, 32), (48, 48, 32)),
     *((48, 48, 48), (64, 64, 48), (64, 64, 64), (96, 96, 64), (128, 128, 128)),
 )
-SHARP_SHAPES = ((48, 48, 32), (56, 56, 40), (64, 64, 48))
-FOLDED_SHAPES = ((56, 56, 56), (64, 64, 64), (72, 72, 72), (80, 80, 80))
+# As few or as many angles as ours at this noise.
+LEAN = {
+    0.1: (
+        (36, 36, 40), (44, 44, 56), (52, 52, 64), (60, 60, 80), (68, 68, 96),
+        (80, 80, 112), (80, 96, 128), (92, 112, 144),
+    ),
+    0.3: ((40, 40, 40), (56, 56, 56), (76, 76, 80)),
+    1.0: (
+        (28, 28, 16), (32, 32, 16), (36, 36, 16), (40, 40, 24), (44, 44, 24),
+        (48, 48, 24), (56, 56, 32),
+    ),
+    3.0: (
+        (28, 28, 12), (32, 32, 12), (28, 28, 16), (32, 32, 16), (36, 36, 16),
+        (40, 40, 16), (44, 44, 16), (48, 48, 16), (52, 52, 24),
+    ),
+    10.0: (
+        (24, 24, 8), (28, 28, 8), (32, 32, 8), (36, 36, 8), (36, 36, 12), (40, 40, 16),
+        (44, 44, 16), (48, 48, 16),
+    ),
+}  # fmt: skip
+# Half of the stable step, where it bounds the error.
+HALVED = {
+    0.1: ((60, 60, 80), (80, 80, 112)),
+    0.3: ((56, 56, 56), (64, 64, 64), (72, 72, 72), (80, 80, 80)),
+    1.0: (
+        (36, 36, 16), (44, 44, 24), (48, 48, 24), (48, 48, 32), (56, 56, 32),
+        (56, 56, 40), (64, 64, 48),
+    ),
+    3.0: (
+        (36, 36, 16), (44, 44, 16), (48, 48, 16), (48, 48, 32), (52, 52, 24),
+        (56, 56, 40), (64, 64, 48),
+    ),
+    10.0: ((36, 36, 12), (40, 40, 16), (48, 48, 16), (48, 48, 32), (64, 64, 32)),
+}  # fmt: skip
 QUICK_RUNS = ({"shape": (16, 16, 16)},)
 
 
 def runs(problem: Problem) -> tuple[dict[str, Any], ...]:
     """Settings by growing cost; then smaller steps, where they bound the error."""
-    largest = tuple({"shape": shape} for shape in SHAPES)
-    sharp = SHARP_SHAPES if problem.noise >= 1.0 else FOLDED_SHAPES
-    return (*largest, *({"shape": shape, "share": 0.5} for shape in sharp))
+    shapes = sorted((*SHAPES, *LEAN[problem.noise]), key=math.prod)
+    largest = tuple({"shape": shape} for shape in shapes)
+    halved = HALVED[problem.noise]
+    return (*largest, *({"shape": shape, "share": 0.5} for shape in halved))
 
 
 def stable_step(code: FourierCollocation) -> float:

@@ -82,7 +82,12 @@ QUICK_RUNS = ({"shape": (8, 8, 8)},)
 
 
 def runs(problem: Problem) -> tuple[dict[str, Any], ...]:
-    """Settings by growing cost; the typed equation at one noise, it costs a minute."""
+    """Settings by growing cost; the typed equation at one noise, it costs a minute.
+
+    Much noise bounds the step by the diffusion in α: there few angles, too.
+    """
+    if problem.noise == 10.0:
+        return ({"shape": (64, 64, 16)}, *CUBES)
     return (*CUBES, TYPED) if problem.noise == 1.0 else CUBES
 
 
@@ -95,10 +100,10 @@ def solve(
 ) -> Result:
     """Solve the benchmark problem; `tolerance` is py-pde's own default.
 
-    The coarsest grid is solved at one noise only: a minute to compile, error above 0.2.
+    The coarsest grid and the finest are solved at one noise only: a minute to compile.
     """
-    if shape == CUBES[0]["shape"] and problem.noise != 1.0:
-        raise LeftOutError("compiles for a minute; its error at A = 1 is above 0.2")
+    if problem.noise != 1.0 and {"shape": shape} in (CUBES[0], CUBES[2]):
+        raise LeftOutError("compiles for a minute; made at A = 1")
     bounds = [(-HALF_WIDTH, HALF_WIDTH)] * 2 + [(0.0, 2 * np.pi)]
     grid = pde.CartesianGrid(bounds, list(shape), periodic=True)
     axes = cell_centres(HALF_WIDTH, shape)

@@ -92,6 +92,8 @@ class Result:
     setup : float
         Process CPU seconds before the first step: compilation, tables, factorisation.
     note : str
+    told : float, optional
+        What the solver says of its error.
     """
 
     solver: str
@@ -102,6 +104,7 @@ class Result:
     wall: float
     setup: float = 0.0
     note: str = ""
+    told: float | None = None
 
     @property
     def shape(self) -> tuple[int, ...]:

@@ -1,6 +1,6 @@
 """The whole benchmark, part after part: errors against CPU time, scaling, start.
 
-    python validation/performance/run.py                     # half an hour
+    python validation/performance/run.py                     # 80 minutes
     python validation/performance/run.py --part noises --noises 0.3 --solvers fipy
     python validation/performance/run.py --resume            # only what is not there
     python validation/performance/run.py --quick             # tiny grids, a minute
@@ -26,9 +26,9 @@ from pathlib import Path
 from results import FOLDER, add_options, path_of
 
 HERE = Path(__file__).parent
-NOISES = (1.0, 0.3, 3.0)
+NOISES = (1.0, 0.3, 3.0, 0.1, 10.0)
 PACKAGE = {"pypde": "pde"}  # whose import name is not that of its module here
-SOLVERS = ("ours", "pypde", "fipy", "dedalus", "fplanck", "fourier")
+SOLVERS = ("ours", "sectors", "pypde", "fipy", "dedalus", "fplanck", "fourier")
 STUDIES = {
     "cells": "scaling_cells.py",
     "s": "scaling_s.py",
@@ -66,7 +66,7 @@ def parse(arguments: list[str] | None = None) -> argparse.Namespace:
 def installed(solver: str) -> bool:
     """Whether a solver can be imported; a missing one is named."""
     package = PACKAGE.get(solver, solver)
-    if solver in ("ours", "fourier") or importlib.util.find_spec(package):
+    if solver in ("ours", "sectors", "fourier") or importlib.util.find_spec(package):
         return True
     print(f"{solver} left out: no module {package!r} is installed", file=sys.stderr)
     return False

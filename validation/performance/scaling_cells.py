@@ -31,6 +31,7 @@ def settings(n: int) -> tuple[Case, ...]:
         case("drift_kick", shape, DS, positive=True),
         case("drift_kick", shape, DS, balanced=True),
         case("drift_kick", shape, DS, **SHARP),
+        case("drift_kick", shape, DS, translation="fourier"),
         case("semi_lagrangian", shape, DS),
     )
 

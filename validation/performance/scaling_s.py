@@ -21,6 +21,7 @@ import ours  # noqa: E402
 import peer_fourier  # noqa: E402
 import reference  # noqa: E402
 from ours import RICHARDSON, SHARP, case  # noqa: E402
+from ours_cases import fourier  # noqa: E402
 from problem import Problem, Result  # noqa: E402
 from timing import keep_memory  # noqa: E402
 
@@ -31,6 +32,7 @@ CASES = (
     case("drift_kick", (64, 64, 32), 1 / 8, balanced=True),
     case("drift_kick", (64, 64, 32), 1 / 4, **RICHARDSON),
     case("drift_kick", (64, 64, 32), 1 / 8, **SHARP),
+    fourier((40, 40, 24), 2, 4),
 )
 QUICK_CASES = (case("drift_kick", (24, 24, 16), 1 / 4),)
 FOURIER, QUICK_FOURIER = (40, 40, 32), (16, 16, 16)

@@ -34,6 +34,7 @@ def settings(n: int) -> tuple[Case, ...]:
     return (
         case("drift_kick", shape, DS),
         case("drift_kick", shape, DS, balanced=True),
+        case("drift_kick", shape, DS, translation="fourier"),
         case("semi_lagrangian", shape, DS),
     )
 

@@ -11,29 +11,29 @@ from __future__ import annotations
 import argparse
 import json
 import math
+import runpy
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
-RESULTS = Path(__file__).parent / "results"
-OURS = ("drift_kick", "semi_lagrangian")
-BASELINE = ("py-pde", [64, 64, 64])
-NOISES = (0.3, 1.0, 3.0)
-LEVELS = tuple(10.0**-k for k in range(1, 9))
-# Against py-pde on 64³: family, extrapolated or not, error of py-pde over the largest
-# one allowed, and CPU time of py-pde over the largest one allowed.
-AIMS = (
-    ("drift_kick", False, 1, 250),
-    ("semi_lagrangian", False, 1, 25),
-    ("", True, 500, 100),
-)
-AIMED_AT = {
+HERE = Path(__file__).parent
+RESULTS = HERE / "results"
+NOISES = (0.1, 0.3, 1.0, 3.0, 10.0)
+PARTS = ("cells", "s", "memory", "operators", "threads", "start", "targets")
+# Beside this file, which a page runs from anywhere.
+wins = SimpleNamespace(**runpy.run_path(str(HERE / "wins.py")))
+OURS, SECTORS, grid = wins.OURS, wins.SECTORS, wins.grid
+NAMED = {
     "cells_per_second": "cells of a whole step of drift_kick per second",
     "ratio_to_euler": "steps of drift_kick per explicit Euler step of py-pde",
     "two_threads": "steps on two threads per step on one",
+    "path_steps_per_second": "steps of sampled paths per second of CPU time",
     "record_share": "time of a record over that of a step",
     "import_seconds": "seconds of import fpsolve, beyond an empty process",
     "example_seconds": "seconds of a warm fpsolve run of the example",
 }
+
+AIMS = {"two_threads": (">=", 1.8), "path_steps_per_second": (">=", 180e6)}
 
 
 def aim_line(name: str, value: float, relation: str, aim: float) -> str:
@@ -61,22 +61,29 @@ class Tables:
         path = self.folder / f"{self.prefix}-{part}.json"
         return json.loads(path.read_text("utf-8"))
 
+    def sections(self, noise: float) -> dict[str, dict[str, Any]]:
+        """What every solver did at one noise."""
+        return dict(self.read(f"noise-{noise:g}")["sections"])
+
     def rows(self, noise: float) -> list[dict[str, Any]]:
         """Every run at one noise."""
-        sections = self.read(f"noise-{noise:g}")["sections"]
-        return [row for section in sections.values() for row in section["rows"]]
+        sections = self.sections(noise).values()
+        return [row for section in sections for row in section["rows"]]
 
     def machine(self) -> None:
         """What the numbers were measured on and with."""
         record = self.read("cells")
         known = record["versions"].items()
-        print(f"{record['processor']}, {record['n_cpus']} cores, {record['date'][:10]}")
+        print(f"{record['processor']}, {record['n_cpus']} cores")
         print(", ".join(f"{name} {version}" for name, version in known if version))
+        sections = {noise: self.sections(noise) for noise in NOISES}
+        records = {part: self.read(part) for part in PARTS}
+        print("\n".join(wins.day_lines(sections, records)))
 
     def errors(self, noise: float) -> None:
         """Error against CPU time of every run at one noise."""
         rows = self.rows(noise)
-        base = baseline(rows)
+        base = wins.baseline(rows)
         print(
             f"{'solver':45} {'grid':>11} {'ds':>18} {'L1 error':>9} "
             f"{'CPU s':>8} {'set-up':>7} {'ratio':>6}"
@@ -90,34 +97,50 @@ class Tables:
 
     def left_out(self, noise: float) -> None:
         """Runs that were not made at one noise, and why."""
-        for solver, section in self.read(f"noise-{noise:g}")["sections"].items():
+        for solver, section in self.sections(noise).items():
             for run in section["left_out"]:
                 name = ", ".join(filter(None, (solver, run["options"])))
                 print(f"{name}, {grid(run['shape'])}: {run['reason']}")
 
     def winners(self, noise: float) -> None:
         """The cheapest run of ours and of the peers below each error."""
-        rows = self.rows(noise)
-        mine = [row for row in rows if row["solver"].startswith(OURS)]
-        peers = [row for row in rows if not row["solver"].startswith(OURS)]
-        heads = f"{'error below':>11}  {'ours':>8}  {'best peer':>9}  {'times':>5}"
-        print(f"{heads}  cheapest")
-        for level in LEVELS:
-            ours, peer = cheapest(mine, level), cheapest(peers, level)
-            if ours or peer:
-                print(
-                    f"{level:11.0e}  {cost(ours)}  {cost(peer):>9}  {win(ours, peer)}"
-                )
+        print("\n".join(wins.winner_lines(self.rows(noise))))
+
+    def sectors(self, noise: float) -> None:
+        """What sectors cost at one noise, their error, and the bound of H they tell."""
+        print(f"{'':17} {'CPU s':>8} {'L1 error':>9} {'bound of H':>10}")
+        for row in wins.sectors(self.rows(noise)):
+            costs = f"{row['cpu']:8.3g} {row['l1_error']:9.2e} {row['told']:10.2e}"
+            print(f"{row['step']:17} {costs}")
+
+    def same_grid(self) -> None:
+        """CPU time of `semi_lagrangian` over `drift_kick`, same cells, same step."""
+        for noise in NOISES:
+            print(wins.same_grid_line(self.rows(noise), noise))
+
+    def told(self) -> None:
+        """What extrapolated runs of ours say of their errors, over the errors."""
+        for noise in NOISES:
+            print(wins.told_line(self.rows(noise), noise))
+
+    def lost(self) -> None:
+        """Where a peer is cheaper than every grid scheme of ours."""
+        lines = [
+            line
+            for noise in NOISES
+            for line in wins.lost_lines(self.rows(noise), noise)
+        ]
+        print("\n".join(lines or ["nowhere"]))
 
     def aims(self) -> None:
-        """What was aimed at against py-pde on 64³ at A = 1, and what was reached."""
-        rows = self.rows(1.0)
-        base = baseline(rows)
-        if base is None:
-            print("not judged: needs the run of py-pde on 64³")
-            return
-        for aim in AIMS:
-            print(judged(aim, rows, base))
+        """What was aimed at against the peers, and what was reached."""
+        heads = " ".join(f"{level:6.0e}" for level in wins.AIMED_LEVELS)
+        print(f"CPU time of the best peer over ours, by error:\n{'':7} {heads}")
+        for noise in NOISES:
+            print(wins.ratio_line(self.rows(noise), noise))
+        print(wins.semi_lagrangian_line(self.rows(1.0)))
+        for noise, seconds in wins.SECTORS_AIMS:
+            print(wins.sectors_line(self.rows(noise), noise, seconds))
 
     def cells(self) -> None:
         """Cells per second of a whole step against the number of cells."""
@@ -187,18 +210,21 @@ class Tables:
             )
 
     def targets(self) -> None:
-        """Aims for whole steps, records and the start, and what was reached."""
+        """Aims for threads and paths; whole steps, records, the start without one."""
         record = self.read("targets")
         measured, shape = record["measured"], record["shape"]
         print(f"on {grid(shape)} cells, and one thread where not said:")
-        for name, (relation, aim) in record["aims"].items():
+        for name, (relation, aim) in AIMS.items():
             if name not in measured:
-                print(f"left out by --quick: {AIMED_AT[name]}")
+                print(f"not measured: {NAMED[name]}, aim {relation} {aim:.3g}")
             elif self.prefix == "quick":
                 # The aims are set for 64³ cells.
-                print(f"{AIMED_AT[name]}: {measured[name]:.3g}")
+                print(f"{NAMED[name]}: {measured[name]:.3g}")
             else:
-                print(aim_line(AIMED_AT[name], measured[name], relation, aim))
+                print(aim_line(NAMED[name], measured[name], relation, aim))
+        for name in NAMED:
+            if name in measured and name not in AIMS:
+                print(f"{NAMED[name]}: {measured[name]:.3g}")
         fastest = min(one["steps"] for one in record["rounds"])
         print(f"fastest round: {math.prod(shape) / fastest:.3g} cells per second")
         if "ratio_to_fused_euler" in measured:
@@ -221,25 +247,6 @@ class Tables:
                     print(f"  {name:18} {text}")
 
 
-def grid(shape: list[int]) -> str:
-    """A grid as printed, 64x64x32."""
-    return "x".join(map(str, shape))
-
-
-def baseline(rows: list[dict[str, Any]]) -> dict[str, Any] | None:
-    """The py-pde run on 64³, if it was made."""
-    for row in rows:
-        if (row["solver"], row["shape"]) == BASELINE:
-            return row
-    return None
-
-
-def cheapest(rows: list[dict[str, Any]], level: float) -> dict[str, Any] | None:
-    """The run with the least CPU time among those with at most this error."""
-    accurate = [row for row in rows if row["l1_error"] <= level]
-    return min(accurate, key=lambda row: row["cpu"], default=None)
-
-
 def mebibytes(n_bytes: int | None) -> str:
     """Memory as printed, or a dash."""
     return "-" if n_bytes is None else f"{n_bytes / 2**20:4.0f} MiB"
@@ -250,55 +257,23 @@ def percent(share: float | None) -> str:
     return "-" if share is None else f"{share:.0%}"
 
 
-def cost(row: dict[str, Any] | None) -> str:
-    """CPU time as printed."""
-    return f"{row['cpu']:6.2g} s" if row else f"{'-':>8}"
-
-
-def win(ours: dict[str, Any] | None, peer: dict[str, Any] | None) -> str:
-    """How many times cheaper the cheaper of two runs is, and which it is."""
-    if ours is None or (peer is not None and peer["cpu"] < ours["cpu"]):
-        assert peer is not None
-        best, other, label = peer, ours, f"peer: {peer['solver']}"
-    else:
-        best, other, label = ours, peer, ours["solver"]
-    times = f"{other['cpu'] / best['cpu']:.2g}" if other else "alone"
-    return f"{times:>5}  {label}, {grid(best['shape'])}"
-
-
-def judged(
-    aim: tuple[str, bool, int, int], rows: list[dict[str, Any]], base: dict[str, Any]
-) -> str:
-    """One line: the cheapest run that is accurate enough, and whether it is enough."""
-    family, extrapolated, error_factor, speed = aim
-    name = family or "extrapolated"
-    candidates = [
-        row
-        for row in rows
-        if row["solver"].startswith(family or OURS)
-        and ("extrapolated" in row["solver"]) == extrapolated
-    ]
-    best = cheapest(candidates, base["l1_error"] / error_factor)
-    if best is None:
-        return f"MISSED  {name}: no run reaches error / {error_factor}"
-    reached = base["cpu"] / best["cpu"]
-    word = "reached" if reached >= speed else "MISSED "
-    accuracy = base["l1_error"] / best["l1_error"]
-    return (
-        f"{word} {name}: CPU time / {reached:.0f} (aim / {speed}), "
-        f"error / {accuracy:.3g} (aim / {error_factor})\n"
-        f"        by {best['solver']}, {grid(best['shape'])}"
-    )
-
-
 def print_all(tables: Tables) -> None:
     """Print every table whose numbers are there."""
-    calls = [("cells", tables.machine, ())]
+    calls: list[Any] = []
     for noise in NOISES:
         part = f"noise-{noise:g}"
-        for method in (tables.errors, tables.left_out, tables.winners):
+        methods = (tables.errors, tables.left_out, tables.winners, tables.sectors)
+        for method in methods:
             calls.append((part, method, (noise,)))
-    calls += [("noise-1", tables.aims, ()), ("cells", tables.cells, ())]
+    needed = (*(f"noise-{noise:g}" for noise in NOISES), *PARTS)
+    complete = all(
+        (tables.folder / f"{tables.prefix}-{part}.json").exists() for part in needed
+    )
+    if complete:
+        calls += [("cells", tables.machine, ())]
+        calls += [("noise-1", tables.lost, ()), ("noise-1", tables.aims, ())]
+        calls += [("noise-1", tables.told, ()), ("noise-1", tables.same_grid, ())]
+    calls += [("cells", tables.cells, ())]
     calls += [("threads", tables.threads, ()), ("s", tables.arclengths, ())]
     calls += [("memory", tables.memory, ()), ("start", tables.start, ())]
     calls += [("start", tables.contributors, ()), ("targets", tables.targets, ())]

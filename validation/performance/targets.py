@@ -1,4 +1,4 @@
-"""The speed asked for: whole steps, threads, diagnostics, import, packaged example.
+"""The speed asked for: threads and paths; whole steps, records, import, example.
 
     python validation/performance/targets.py            # 64³, 3 minutes
     python validation/performance/targets.py --quick    # 16³ without py-pde
@@ -11,11 +11,10 @@ about times. Writes results/benchmark-targets.json:
   time for `*_elapsed`. `steps` is one of N_STEPS steps made by one `advance`, `step`
   one made alone, `record` one `Recorder.record`, `euler` one explicit Euler step of
   py-pde with the equation as a user types it, `euler_fused` with coefficients fused by
-  hand into a `PDEBase`. The aim was set without saying which; the first is what a
-  user of py-pde writes.
+  hand into a `PDEBase`, `paths` one call of `sample_paths`.
 - `measured`: medians; cells per second, ratios, and seconds.
-- `aims`: what each of `measured` is compared with, and whether it is to be above or
-  below.
+- `aims`: what some of `measured` are compared with, and whether they are to be above
+  or below.
 """
 
 from __future__ import annotations
@@ -38,8 +37,10 @@ os.environ["NUMBA_NUM_THREADS"] = str(max(2, os.cpu_count() or 1))
 import numba  # noqa: E402
 from kernels import DS, N_STEPS  # noqa: E402
 from ours import case, make_scheme, make_start  # noqa: E402
+from paths_ours import MODELS, end_positions  # noqa: E402
 from problem import HALF_WIDTH, Problem, initial_density, open_mesh  # noqa: E402
 from start_up import IMPORTS, median, timed  # noqa: E402
+from tables import AIMS  # noqa: E402
 from timing import Stopwatch, keep_memory  # noqa: E402
 
 from fpsolve.density.recorder import Recorder  # noqa: E402
@@ -47,27 +48,22 @@ from fpsolve.density.recorder import Recorder  # noqa: E402
 ROUNDS = 15
 SECONDS_PER_SAMPLE = 0.05
 EULER_STEP, EULER_STEPS = 1e-4, 10
-AIMS = {
-    "cells_per_second": (">=", 120e6),
-    "ratio_to_euler": (">=", 4.5),
-    "two_threads": (">=", 1.6),
-    "record_share": ("<=", 0.2),
-    "import_seconds": ("<=", 0.6),
-    "example_seconds": ("<=", 5.0),
-}
+N_PATHS, N_PATH_STEPS = 20_000, 1000
 Call = Callable[[], object]
 
 
 def our_calls(shape: tuple[int, int, int]) -> dict[str, Call]:
-    """One step among several, one alone, and one record of `drift_kick`."""
+    """Steps of `drift_kick` among others and alone, a record; a call of the sampler."""
     scheme = make_scheme(case("drift_kick", shape, DS))
     p = make_start(scheme.grid)
     state = scheme.start(p)
     recorder = Recorder(scheme.model, scheme.grid)
+    paths = MODELS["quadratic B"]()
     return {
         "steps": lambda: scheme.advance(state, 0.0, DS, N_STEPS),
         "step": lambda: scheme.advance(state, 0.0, DS, 1),
         "record": lambda: recorder.record(p, 0.0),
+        "paths": lambda: end_positions(paths, "splitting", N_PATHS, N_PATH_STEPS),
     }
 
 
@@ -158,6 +154,9 @@ def summary(all_rounds: list[dict[str, float]], cells: int) -> dict[str, float]:
         "two_threads": middle(
             lambda one: one["steps_elapsed"] / one["two_threads_elapsed"]
         ),
+        "path_steps_per_second": N_PATHS
+        * N_PATH_STEPS
+        / middle(lambda one: one["paths"]),
         "record_seconds": middle(lambda one: one["record"]),
         "record_share": middle(lambda one: one["record"] / one["steps"]),
         "record_share_alone": middle(lambda one: one["record"] / one["step"]),
