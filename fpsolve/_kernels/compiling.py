@@ -9,6 +9,7 @@ from functools import wraps
 import numba
 
 from fpsolve._kernels.compile_lock import compile_alone
+from fpsolve._kernels.compile_once import compile_once
 from fpsolve._kernels.threads import parallel_region
 
 __all__ = ["ParallelKernel", "kernels_are_kept", "njit"]
@@ -39,6 +40,7 @@ def njit(**options):
             tell(error)
             compiled = numba.njit(**{**options, "cache": False})(function)
         forgive(compiled)
+        compile_once(compiled)
         compile_alone(compiled)
         return ParallelKernel(compiled) if options.get("parallel") else compiled
 

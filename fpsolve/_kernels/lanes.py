@@ -19,7 +19,8 @@ import numpy as np
 from llvmlite import ir
 from numba import types
 from numba.core import cgutils
-from numba.extending import intrinsic, models, overload, register_model
+from numba.core.typing.templates import AbstractTemplate, infer_global, signature
+from numba.extending import lower_builtin, models, register_model
 
 LANES = 4
 VECTOR = ir.VectorType(ir.DoubleType(), LANES)
@@ -103,6 +104,42 @@ def parts(lanes):
     return tuple(lanes)
 
 
+def compiled(function, result, *kinds):
+    """Let compiled code make of `function(*kinds)`, which is a `result`, what follows.
+
+    Decorates code(context, builder, signature, arguments), which gives LLVM's value.
+    Said to numba directly: an `overload` would be one more function for every kind of
+    array and index, typed and put into its caller at every call, which took longer than
+    all that LLVM does with a kernel.
+    """
+
+    def register(code):
+        infer_global(function)(call_of(kinds, result))
+        lower_builtin(function, *kinds)(code)
+        return code
+
+    return register
+
+
+def call_of(kinds, result):
+    """Numba's template of a call with arguments of these kinds: types or classes."""
+
+    class Call(AbstractTemplate):
+        def generic(self, arguments, keywords):
+            if keywords or len(arguments) != len(kinds):
+                return None
+            if all(map(is_of, arguments, kinds)):
+                return signature(result, *arguments)
+            return None
+
+    return Call
+
+
+def is_of(argument, kind):
+    """Whether numba's type of an argument is this type, or of this class."""
+    return isinstance(argument, kind) if isinstance(kind, type) else argument == kind
+
+
 def pointer_to(context, builder, signature, arguments):
     """Address of array[index] as that of four values."""
     array_type, index_type = signature.args[:2]
@@ -118,80 +155,10 @@ def pointer_to(context, builder, signature, arguments):
     return builder.bitcast(item, VECTOR.as_pointer())
 
 
-@intrinsic
-def lanes_at(_, array, index):
-    """`take` in compiled code."""
-
-    def code(context, builder, signature, arguments):
-        pointer = pointer_to(context, builder, signature, arguments)
-        return builder.load(pointer, align=8)
-
-    return lanes_type(array, index), code
-
-
-@intrinsic
-def set_lanes(_, array, index, lanes):
-    """`put` in compiled code."""
-
-    def code(context, builder, signature, arguments):
-        pointer = pointer_to(context, builder, signature, arguments)
-        builder.store(arguments[2], pointer, align=8)
-        return context.get_dummy_value()
-
-    return types.none(array, index, lanes), code
-
-
 def shuffled(builder, one, other, places):
     """Four of the eight values of two vectors."""
     pattern = ir.Constant(ir.VectorType(ir.IntType(32), LANES), list(places))
     return builder.shuffle_vector(one, other, pattern)
-
-
-@intrinsic
-def all_lanes(_, value):
-    """`spread` in compiled code."""
-
-    def code(context, builder, signature, arguments):
-        number = context.cast(builder, arguments[0], signature.args[0], types.float64)
-        undefined = ir.Constant(VECTOR, ir.Undefined)
-        first = builder.insert_element(undefined, number, ir.IntType(32)(0))
-        return shuffled(builder, first, first, (0, 0, 0, 0))
-
-    return lanes_type(value), code
-
-
-@intrinsic
-def transposed_lanes(_, a, b, c, d):
-    """`transposed` in compiled code."""
-
-    def code(context, builder, signature, rows):
-        columns = []
-        for places in ((0, 4, 1, 5), (2, 6, 3, 7)):
-            upper = shuffled(builder, rows[0], rows[1], places)
-            lower = shuffled(builder, rows[2], rows[3], places)
-            columns.append(shuffled(builder, upper, lower, (0, 1, 4, 5)))
-            columns.append(shuffled(builder, upper, lower, (2, 3, 6, 7)))
-        return context.make_tuple(builder, signature.return_type, columns)
-
-    return types.UniTuple(lanes_type, LANES)(a, b, c, d), code
-
-
-def choice(comparison):
-    """Intrinsic that takes the second where `first comparison second` holds."""
-
-    @intrinsic
-    def choose(_, one, other):
-        def code(context, builder, signature, arguments):
-            one, other = arguments
-            second = builder.fcmp_ordered(comparison, one, other)
-            return builder.select(second, other, one)
-
-        return lanes_type(one, other), code
-
-    return choose
-
-
-smaller_lanes, larger_lanes = choice(">"), choice("<")
 
 
 def whole_numbers(value):
@@ -199,206 +166,121 @@ def whole_numbers(value):
     return ir.Constant(BITS, [value] * LANES)
 
 
-@intrinsic
-def split_lanes(_, lanes):
-    """`mantissa_and_exponent` in compiled code, by integer operations on the bits."""
-
-    def code(context, builder, signature, arguments):
-        bits = builder.bitcast(arguments[0], BITS)
-        # √½ has the bits ROOT_HALF and 1 the bits 1023 << 52: with this added, the
-        # exponent field of [√½, √2) reads 1023.
-        moved = builder.add(bits, whole_numbers((1023 << 52) - ROOT_HALF))
-        field = builder.lshr(moved, whole_numbers(52))
-        away = builder.shl(builder.sub(field, whole_numbers(1023)), whole_numbers(52))
-        mantissa = builder.bitcast(builder.sub(bits, away), VECTOR)
-        # A whole number n below 2⁵² put into the last bits of 2⁵² makes 2⁵² + n.
-        number = builder.or_(field, whole_numbers(BITS_OF_2_52))
-        offset = ir.Constant(VECTOR, [2.0**52 + 1023.0] * LANES)
-        exponent = builder.fsub(builder.bitcast(number, VECTOR), offset)
-        return context.make_tuple(builder, signature.return_type, [mantissa, exponent])
-
-    return types.UniTuple(lanes_type, 2)(lanes), code
-
-
-def vector_function(builder, name, n_arguments):
+def vector_function(builder, name, arguments):
     """LLVM's function of that name for vectors."""
-    kind = ir.FunctionType(VECTOR, [VECTOR] * n_arguments)
+    kind = ir.FunctionType(VECTOR, [VECTOR] * len(arguments))
     name = f"llvm.{name}.v{LANES}f64"
-    return cgutils.get_or_insert_function(builder.module, kind, name)
+    function = cgutils.get_or_insert_function(builder.module, kind, name)
+    return builder.call(function, arguments)
 
 
-@intrinsic
-def root_lanes(_, lanes):
-    """`root` in compiled code."""
-
-    def code(context, builder, signature, arguments):
-        return builder.call(vector_function(builder, "sqrt", 1), arguments)
-
-    return lanes_type(lanes), code
+@compiled(take, lanes_type, types.Array, types.BaseTuple)
+def compiled_take(context, builder, signature, arguments):
+    """Load of four values."""
+    return builder.load(pointer_to(context, builder, signature, arguments), align=8)
 
 
-@intrinsic
-def floor_of_lanes(_, lanes):
-    """`below` in compiled code."""
-
-    def code(context, builder, signature, arguments):
-        return builder.call(vector_function(builder, "floor", 1), arguments)
-
-    return lanes_type(lanes), code
+@compiled(put, types.none, types.Array, types.BaseTuple, lanes_type)
+def compiled_put(context, builder, signature, arguments):
+    """Store of four values."""
+    pointer = pointer_to(context, builder, signature, arguments)
+    builder.store(arguments[2], pointer, align=8)
+    return context.get_dummy_value()
 
 
-@intrinsic
-def fused_lanes(_, a, b, c):
-    """`fused` in compiled code."""
-
-    def code(context, builder, signature, arguments):
-        return builder.call(vector_function(builder, "fma", 3), arguments)
-
-    return lanes_type(a, b, c), code
-
-
-@intrinsic
-def opposite_lanes(_, lanes):
-    """−lanes in compiled code."""
-
-    def code(context, builder, signature, arguments):
-        return builder.fneg(arguments[0])
-
-    return lanes_type(lanes), code
+@compiled(spread, lanes_type, types.Number)
+def compiled_spread(context, builder, signature, arguments):
+    """One value, taken four times."""
+    number = context.cast(builder, arguments[0], signature.args[0], types.float64)
+    undefined = ir.Constant(VECTOR, ir.Undefined)
+    first = builder.insert_element(undefined, number, ir.IntType(32)(0))
+    return shuffled(builder, first, first, (0, 0, 0, 0))
 
 
-@intrinsic
-def parts_of_lanes(_, lanes):
-    """`parts` in compiled code."""
-
-    def code(context, builder, signature, arguments):
-        values = [
-            builder.extract_element(arguments[0], ir.IntType(32)(lane))
-            for lane in range(LANES)
-        ]
-        return context.make_tuple(builder, signature.return_type, values)
-
-    return types.UniTuple(types.float64, LANES)(lanes), code
+@compiled(transposed, types.UniTuple(lanes_type, LANES), *[lanes_type] * LANES)
+def compiled_transposed(context, builder, signature, rows):
+    """Pairs first, then their halves."""
+    columns = []
+    for places in ((0, 4, 1, 5), (2, 6, 3, 7)):
+        upper = shuffled(builder, rows[0], rows[1], places)
+        lower = shuffled(builder, rows[2], rows[3], places)
+        columns.append(shuffled(builder, upper, lower, (0, 1, 4, 5)))
+        columns.append(shuffled(builder, upper, lower, (2, 3, 6, 7)))
+    return context.make_tuple(builder, signature.return_type, columns)
 
 
-def lane_by_lane(instruction):
-    """Intrinsic of an instruction on two vectors; contraction is allowed."""
-
-    @intrinsic
-    def combine(_, one, other):
-        def code(context, builder, signature, arguments):
-            return getattr(builder, instruction)(*arguments, flags=("contract",))
-
-        return lanes_type(one, other), code
-
-    return combine
-
-
-added, subtracted = lane_by_lane("fadd"), lane_by_lane("fsub")
-multiplied, divided = lane_by_lane("fmul"), lane_by_lane("fdiv")
-
-
-@overload(take, inline="always")
-def compiled_take(array, index):
-    """Implementation for numba."""
-    return lambda array, index: lanes_at(array, index)
+@compiled(mantissa_and_exponent, types.UniTuple(lanes_type, 2), lanes_type)
+def compiled_mantissa_and_exponent(context, builder, signature, arguments):
+    """By integer operations on the bits."""
+    bits = builder.bitcast(arguments[0], BITS)
+    # √½ has the bits ROOT_HALF and 1 the bits 1023 << 52: with this added, the
+    # exponent field of [√½, √2) reads 1023.
+    moved = builder.add(bits, whole_numbers((1023 << 52) - ROOT_HALF))
+    field = builder.lshr(moved, whole_numbers(52))
+    away = builder.shl(builder.sub(field, whole_numbers(1023)), whole_numbers(52))
+    mantissa = builder.bitcast(builder.sub(bits, away), VECTOR)
+    # A whole number n below 2⁵² put into the last bits of 2⁵² makes 2⁵² + n.
+    number = builder.or_(field, whole_numbers(BITS_OF_2_52))
+    offset = ir.Constant(VECTOR, [2.0**52 + 1023.0] * LANES)
+    exponent = builder.fsub(builder.bitcast(number, VECTOR), offset)
+    return context.make_tuple(builder, signature.return_type, [mantissa, exponent])
 
 
-@overload(put, inline="always")
-def compiled_put(array, index, lanes):
-    """Implementation for numba."""
-    return lambda array, index, lanes: set_lanes(array, index, lanes)
+@compiled(parts, types.UniTuple(types.float64, LANES), lanes_type)
+def compiled_parts(context, builder, signature, arguments):
+    """The elements of the vector."""
+    values = [
+        builder.extract_element(arguments[0], ir.IntType(32)(lane))
+        for lane in range(LANES)
+    ]
+    return context.make_tuple(builder, signature.return_type, values)
 
 
-@overload(spread, inline="always")
-def compiled_spread(value):
-    """Implementation for numba."""
-    return lambda value: all_lanes(value)
+@compiled(root, lanes_type, lanes_type)
+def compiled_root(context, builder, signature, arguments):
+    """Correctly rounded."""
+    return vector_function(builder, "sqrt", arguments)
 
 
-@overload(transposed, inline="always")
-def compiled_transposed(a, b, c, d):
-    """Implementation for numba."""
-    return lambda a, b, c, d: transposed_lanes(a, b, c, d)
+@compiled(below, lanes_type, lanes_type)
+def compiled_below(context, builder, signature, arguments):
+    """Exact."""
+    return vector_function(builder, "floor", arguments)
 
 
-@overload(smaller, inline="always")
-def compiled_smaller(one, other):
-    """Implementation for numba."""
-    return lambda one, other: smaller_lanes(one, other)
+@compiled(fused, lanes_type, lanes_type, lanes_type, lanes_type)
+def compiled_fused(context, builder, signature, arguments):
+    """Rounded once."""
+    return vector_function(builder, "fma", arguments)
 
 
-@overload(larger, inline="always")
-def compiled_larger(one, other):
-    """Implementation for numba."""
-    return lambda one, other: larger_lanes(one, other)
-
-
-@overload(mantissa_and_exponent, inline="always")
-def compiled_mantissa_and_exponent(lanes):
-    """Implementation for numba."""
-    return lambda lanes: split_lanes(lanes)
-
-
-@overload(root, inline="always")
-def compiled_root(lanes):
-    """Implementation for numba."""
-    return lambda lanes: root_lanes(lanes)
-
-
-@overload(below, inline="always")
-def compiled_below(lanes):
-    """Implementation for numba."""
-    return lambda lanes: floor_of_lanes(lanes)
-
-
-@overload(fused, inline="always")
-def compiled_fused(a, b, c):
-    """Implementation for numba."""
-    return lambda a, b, c: fused_lanes(a, b, c)
-
-
-@overload(parts, inline="always")
-def compiled_parts(lanes):
-    """Implementation for numba."""
-    return lambda lanes: parts_of_lanes(lanes)
-
-
-@overload(operator.neg, inline="always")
-def compiled_opposite(lanes):
+@compiled(operator.neg, lanes_type, lanes_type)
+def compiled_opposite(context, builder, signature, arguments):
     """−lanes."""
-    if lanes == lanes_type:
-        return lambda lanes: opposite_lanes(lanes)
-    return None
+    return builder.fneg(arguments[0])
 
 
-@overload(operator.add, inline="always")
-def compiled_add(one, other):
-    """one + other, lane by lane."""
-    if one == other == lanes_type:
-        return lambda one, other: added(one, other)
-    return None
+def choose(function, comparison):
+    """Compile `function` to the second where `first comparison second` holds."""
+
+    @compiled(function, lanes_type, lanes_type, lanes_type)
+    def choice(context, builder, signature, arguments):
+        one, other = arguments
+        second = builder.fcmp_ordered(comparison, one, other)
+        return builder.select(second, other, one)
 
 
-@overload(operator.sub, inline="always")
-def compiled_subtract(one, other):
-    """one − other, lane by lane."""
-    if one == other == lanes_type:
-        return lambda one, other: subtracted(one, other)
-    return None
+def lane_by_lane(function, instruction):
+    """Compile `function` to an instruction on two vectors; contraction is allowed."""
+
+    @compiled(function, lanes_type, lanes_type, lanes_type)
+    def combination(context, builder, signature, arguments):
+        return getattr(builder, instruction)(*arguments, flags=("contract",))
 
 
-@overload(operator.mul, inline="always")
-def compiled_multiply(one, other):
-    """one · other, lane by lane."""
-    if one == other == lanes_type:
-        return lambda one, other: multiplied(one, other)
-    return None
-
-
-@overload(operator.truediv, inline="always")
-def compiled_divide(one, other):
-    """one / other, lane by lane."""
-    if one == other == lanes_type:
-        return lambda one, other: divided(one, other)
-    return None
+choose(smaller, ">")
+choose(larger, "<")
+lane_by_lane(operator.add, "fadd")
+lane_by_lane(operator.sub, "fsub")
+lane_by_lane(operator.mul, "fmul")
+lane_by_lane(operator.truediv, "fdiv")
