@@ -1,10 +1,10 @@
-"""Values between the planes of a rectilinear grid, linear in every coordinate."""
+"""Values of tables: linear on grids in every coordinate, cubic on lines."""
 
 import numpy as np
 
 from fpsolve._kernels.compiling import njit
 
-__all__ = ["between_planes"]
+__all__ = ["between_planes", "cubic_values"]
 
 
 @njit(cache=True, error_model="numpy")
@@ -55,3 +55,21 @@ def between_planes(axes, values, r, out):
                 for number in range(out.shape[1]):
                     out[place, number] += weight * values[i + a, j + b, k + c, number]
     return outside
+
+
+@njit(cache=True, error_model="numpy")
+def cubic_values(first, step, cubics, x, out):
+    """Values at finite x (n,) of cubics between equally spaced places, into out (m, n).
+
+    cubics (4, pieces, m): coefficients from the cube of the distance to the beginning
+    of a piece on. Before the first place and behind the last the cubics go on.
+    """
+    last = cubics.shape[1] - 1
+    for i in range(x.size):
+        piece = min(max(int((x[i] - first) / step), 0), last)
+        away = x[i] - (first + piece * step)
+        for number in range(cubics.shape[2]):
+            value = cubics[0, piece, number]
+            for power in range(1, 4):
+                value = value * away + cubics[power, piece, number]
+            out[number, i] = value

@@ -9,6 +9,7 @@ from functools import cache
 import numpy as np
 from scipy.interpolate import CubicSpline
 
+from fpsolve._kernels.flow import cubic_values
 from fpsolve._support.arrays import Array
 from fpsolve.fibre.turbulence import (
     FALLING,
@@ -73,7 +74,7 @@ def white_amplitudes(
     # Rounding of the smallest energy itself.
     above = np.sqrt(np.maximum(np.log(scaled / energy_of(1.0)), 0.0))
     unit = (dissipation ** (1 / 3) / (2 * viscosity * constant)) ** 0.75
-    ends = unit * np.exp(_inertial_ranges()(above)).T
+    ends = unit * np.exp(_inertial_ranges()(above))
     level = constant * dissipation ** (2 / 3)
     if decay_time is None:
         first, last = (
@@ -94,17 +95,32 @@ def white_amplitudes(
     return np.asarray(np.sqrt(np.maximum(squares, 0.0)))
 
 
-def _from_table(table: CubicSpline, q: Array) -> Array:
+class _Table:
+    """Cubic splines through values (m, n) at equally spaced places."""
+
+    def __init__(self, places: Array, values: Array) -> None:
+        spline = CubicSpline(places, values.T)
+        self.first, self.step = float(places[0]), float(places[1] - places[0])
+        self.cubics = np.ascontiguousarray(spline.c)
+
+    def __call__(self, x: Array) -> Array:
+        """Values at x (n,), shape (m, n)."""
+        out = np.empty((self.cubics.shape[2], x.size))
+        cubic_values(self.first, self.step, self.cubics, x, out)
+        return out
+
+
+def _from_table(table: _Table, q: Array) -> Array:
     """∫ of J₀ and of J₀ − J₁, shape (2, n)."""
     place = np.log(np.clip(q, math.exp(SLOW), math.exp(FAST)))
     grown = 1 + q**2
-    even, less = table(place).T
+    even, less = table(place)
     root = np.sqrt(grown)
     return np.stack([even / root, less / (root * grown)])
 
 
 @cache
-def _decaying() -> tuple[CubicSpline, CubicSpline]:
+def _decaying() -> tuple[_Table, _Table]:
     """√(1 + q²) P of J₀ and (1 + q²)^(3/2) P of J₀ − J₁ over ln q, and those of Q."""
     places = np.linspace(SLOW, FAST, round((FAST - SLOW) / STEP) + 1)
     q = np.exp(places)
@@ -113,8 +129,8 @@ def _decaying() -> tuple[CubicSpline, CubicSpline]:
     between = _integrals(q, 0.0, BETWEEN, lambda y: y ** (-5 / 3))
     beyond = _integrals(q, 0.0, BEYOND, _sum(FALLING))
     return (
-        CubicSpline(places, (scale * (below + between)).T),
-        CubicSpline(places, (scale * (beyond - between)).T),
+        _Table(places, scale * (below + between)),
+        _Table(places, scale * (beyond - between)),
     )
 
 
@@ -140,14 +156,14 @@ def _frozen() -> tuple[float, float]:
 
 
 @cache
-def _inertial_ranges() -> CubicSpline:
+def _inertial_ranges() -> _Table:
     """ln κ₁, ln κ₂ over √(ln k − ln k_min) for C_K = ε = 2ν = 1."""
     above = np.linspace(0.0, REACH, PLACES)
     spectra = [
         TurbulenceSpectrum(k, 1.0, 0.5, 1.0)
         for k in energy_of(1.0) * np.exp(above**2) * (1 + 1e-15)
     ]
-    return CubicSpline(above, np.log([one.inertial_range for one in spectra]))
+    return _Table(above, np.log([one.inertial_range for one in spectra]).T)
 
 
 def _energy_scale(dissipation: Array, viscosity: float, constant: float) -> Array:

@@ -2,12 +2,12 @@
 
 import numpy as np
 import pytest
-from scipy.interpolate import RegularGridInterpolator
+from scipy.interpolate import CubicSpline, RegularGridInterpolator
 
 from fpsolve._kernels import banded, chain, drag
 from fpsolve._kernels.chain import Chain, Iterate, Pull, Step
 from fpsolve._kernels.chain_series import chain_numbers
-from fpsolve._kernels.flow import between_planes
+from fpsolve._kernels.flow import between_planes, cubic_values
 from fpsolve.fibre import AirFlow
 
 N_EDGES = 6
@@ -212,3 +212,14 @@ def test_values_between_planes_are_those_of_scipy():
         (axes[0], axes[2]), values[:, 0], bounds_error=False
     )
     np.testing.assert_allclose(found, flattened(r[:, [0, 2]]), rtol=0, atol=1e-14)
+
+
+def test_cubics_between_equally_spaced_places_are_those_of_scipy():
+    rng = np.random.default_rng(9)
+    places = np.linspace(-1.0, 2.0, 13)
+    spline = CubicSpline(places, rng.normal(size=(13, 2)))
+    x = np.concatenate([rng.uniform(-1.2, 2.2, 40), places])
+    for function in (cubic_values, cubic_values.py_func):
+        found = np.empty((2, x.size))
+        function(-1.0, 0.25, spline.c, x, found)
+        np.testing.assert_allclose(found, spline(x).T, rtol=0, atol=1e-12)
