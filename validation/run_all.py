@@ -18,6 +18,7 @@ SCRIPTS = (
     "smooth_path_orders.py",
     "ergodic_averages.py",
     "spectral_reference.py",
+    "sector_errors.py",
     "web_prediction.py",
     "web_gradients.py",
     "web_homogeneity.py",

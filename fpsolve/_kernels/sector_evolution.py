@@ -30,7 +30,7 @@ WIDER, MOST_TRIALS, NARROWER, LITTLE = 1.3, 16, 1.2, 1e-2
 REACH, GROWTH, FLATTER = 64.0, 0.6, 60.0
 # Shares of what may be neglected: by all fittings, by all series, and, squared, by what
 # flows out. Between its two ends a step may lose this much more than at either.
-FITTING, SERIES, FLOWING, BETWEEN = 0.3, 0.01, 0.2, 4.0
+FITTING, SERIES, FLOWING, BETWEEN = 0.1, 0.01, 0.2, 4.0
 # What is left out decays within a few coefficients of the edge, which is as long as the
 # root of all. Where it does not, the threshold is lowered.
 ALONG_EDGE, LOWER = 8.0, 0.1

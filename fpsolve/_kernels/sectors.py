@@ -23,9 +23,9 @@ BEYOND, MORE = 12.0, 40
 LARGEST = 1e200
 # Of a half axis.
 PRECISION = 1e-2
-# Where the ellipse is nearly a circle its polynomials grow with n, (half axes / focus)^n,
-# and it takes this many terms per unit of half axes times arclength; where it is flatter
-# than FLAT times, those above are enough.
+# Where the ellipse is nearly a circle its polynomials grow as (half axes / focus)^n, and
+# it takes this many terms per unit of half axes times arclength; where it is FLAT times
+# as wide as high, those above are enough.
 ROUND, FLAT = 2.2, 4.0
 # Foci of the ellipse stay this share of the longer half axis from the centre.
 FLATTEST = 0.35
@@ -254,6 +254,24 @@ def norm_between(c, inner, outer):
         for part in range(2):
             for m in range(kept + 1, outer[row] + 1):
                 total += c[part, row, m] ** 2
+    return np.sqrt(total)
+
+
+@njit(cache=True, error_model="numpy")
+def distance(c, counts, other, other_counts):
+    """Norm of what two expansions of one sector differ by."""
+    n = max(counts.size, other_counts.size)
+    total = 0.0
+    for row in range(n):
+        one, two = row - (n - counts.size) // 2, row - (n - other_counts.size) // 2
+        width = counts[one] if 0 <= one < counts.size else 0
+        width_of_other = other_counts[two] if 0 <= two < other_counts.size else 0
+        for part in range(2):
+            for m in range(1, max(width, width_of_other) + 1):
+                value = c[part, one, m] if m <= width else 0.0
+                if m <= width_of_other:
+                    value -= other[part, two, m]
+                total += value**2
     return np.sqrt(total)
 
 

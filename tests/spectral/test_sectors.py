@@ -203,7 +203,30 @@ def test_the_entropy_on_rings_is_the_closed_form_with_an_error_that_covers():
     )  # fmt: skip
     weight = np.exp(-0.5 * (xi1**2 + xi2**2)) / (4 * math.pi**2) * grid.cell_volume
     norm = math.sqrt(float((logarithm**2 * weight).sum()))
-    assert math.hypot(*entropy[2:]) == pytest.approx(norm, rel=1e-6)
+    squares = entropy.norms**2
+    whole = squares[0] + 2 * squares[1:].sum() + entropy.rest**2
+    assert math.sqrt(whole) == pytest.approx(norm, rel=1e-6)
+
+
+def test_what_an_error_of_h_does_to_the_entropy_is_bounded():
+    # h = 1 + a cos φ beside 1 + (a + e) cos φ: H = ∫ h ln h, and all of it in M = ±1.
+    for a, e in ((0.3, 1e-3), (0.9, 1e-4), (1.0, 1e-5)):
+        phi = 2 * np.pi * (np.arange(20000) + 0.5) / 20000
+        h, other = 1 + a * np.cos(phi), np.maximum(1 + (a + e) * np.cos(phi), 1e-300)
+        error = e / math.sqrt(2)
+        logarithm = np.log(np.maximum(h, error))
+        norms = np.array([
+            abs(logarithm.mean()), abs((logarithm * np.exp(1j * phi)).mean())
+        ])  # fmt: skip
+        threshold = math.sqrt(error)
+        empty = float((h <= threshold).mean())
+        entropy = rings.Entropy(0.0, 0.0, norms, 0.0, threshold, empty)
+        moved = abs((other * np.log(other) - h * np.log(h)).mean())
+        # ±1 share the norm of the error.
+        found = entropy.error(np.array([0.0, error / math.sqrt(2)]), 0.0)
+        assert moved <= found
+        # First order, but for what is below the threshold.
+        assert found <= 1.6 * moved
 
 
 def test_kernels_of_values_equal_their_source():
@@ -311,6 +334,18 @@ def test_bounds_hold_and_are_within_the_tolerance(noise):
             assert np.all(errors <= tolerance * size), name
             away = np.abs(found.series[name] - sharp.series[name])
             assert np.all(away <= errors + sharp.errors[name]), name
+
+
+def test_what_is_told_of_the_entropy_is_not_far_from_its_error():
+    law = GaussianLaw((1.5, 0.0), 0.25, math.pi / 2, 4.0)
+    sharp = fp.spectral_solve(MODEL, law, (0.2, 1.0, 5.0), tolerance=1e-9)
+    for tolerance in (1e-5, 1e-6):
+        found = fp.spectral_solve(MODEL, law, (0.2, 1.0, 5.0), tolerance=tolerance)
+        away = np.abs(found.relative_entropy - sharp.relative_entropy)
+        told = found.errors["relative_entropy"]
+        assert np.all(away <= told)
+        # Bounds alone are 270 to 1000 times the error.
+        assert np.all(told <= 200 * away)
 
 
 def test_the_mass_is_one_to_rounding():

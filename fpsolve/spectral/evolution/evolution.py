@@ -47,9 +47,13 @@ def spectral_solve(
     times e^{ikα}, which split by the angular index M = l + k into sectors: small real
     recurrences, of which those present in p0 are evolved, one by one. (7) is
     dissipative in L²(μ), so that what is left out is at most as large later: every
-    number has a bound from the norms left out at each fitting, the tolerances of the
+    sector has a bound from the norms left out at each fitting, the tolerances of the
     series, and E² = 2 ∫ ‖edge‖ ‖(1 − P) L* h‖ ds, what flows out of the coefficients P
-    kept, with the norm of the last of them for those beyond. Mass is conserved exactly.
+    kept, with the norm of the last of them for those beyond. How much smaller the error
+    is than the bound is measured: five sectors are evolved a hundred times as coarsely,
+    their distance from the run is their error, and all errors are taken to be three
+    times its share of their bounds. That is validated, not proved. Mass is conserved
+    exactly.
 
     Otherwise the basis is He_i(ξ1/σ1) He_j(ξ2/σ2) e^{ikα}, refined until two
     truncations agree to `tolerance` in every number at every s. Mass is conserved up to

@@ -32,20 +32,44 @@ MORE_ANGLES, RADII, PER_WAVE = 1.1, 40.0, 3.0
 # The errors of a rule and of those with a half and a quarter of its nodes fall at least
 # as a geometric series: what is left of the last change, times SAFETY.
 SAFETY, ROUNDING = 4.0, 1e-14
+# An error of nothing is taken as this.
+LEAST = 1e-300
 
 
 class Entropy(NamedTuple):
-    """H, the error of its quadrature, and ‖ln h‖ in L²(μ): of M = 0, and of the others.
+    """H, the error of its quadrature, and what carries errors of h over to it.
 
     Attributes
     ----------
-    value, doubt, round_norm, other_norm : float
+    value, doubt : float
+    norms : ndarray, shape (n_sectors,)
+        ‖ln h‖ in L²(μ) of every sector M ≥ 0.
+    rest : float
+        The same of all beyond, ±M.
+    threshold, empty : float
+        The root of the error, and μ where h is less.
     """
 
     value: float
     doubt: float
-    round_norm: float
-    other_norm: float
+    norms: Array
+    rest: float
+    threshold: float
+    empty: float
+
+    def error(self, errors: Array, lacking: float) -> float:
+        """What H may be wrong by for errors of the sectors, and of all beyond them.
+
+        |φ(h + e) − φ(h) − e ln(h + e)| ≤ e²/(h + e) for φ(h) = h ln h − h, by
+        convexity: the first order is a scalar product in every sector, and where h is
+        above the threshold, the rest is of second order. Elsewhere, where what is below
+        the error counts as the error, it is taken to be |e| at most.
+        """
+        first = errors[0] * self.norms[0] + 2.0 * float(errors[1:] @ self.norms[1:])
+        others = math.sqrt(2.0) * float(np.linalg.norm(errors[1:])) + lacking
+        both = math.hypot(errors[0], others)
+        second = both * (both / self.threshold + math.sqrt(self.empty))
+        return float(first + lacking * self.rest + min(both, second))
 
 
 class Rule(NamedTuple):
@@ -62,7 +86,7 @@ def relative_entropy(h: SectorExpansion, tolerance: float, error: float) -> Entr
     Clenshaw-Curtis in r, trapezoids in both angles. Every term is non-negative, so that
     small entropies keep their digits; where h is negative it counts as zero. Nodes are
     added until the error of every rule is below the tolerance, at most `REFINEMENTS`
-    times. In ‖ln h‖, h counts as no less than the `error`.
+    times. In ln h, h counts as no less than the `error`.
     """
     width = math.sqrt(4.0 * math.log(1e3 / tolerance))
     rule = Rule(
@@ -71,14 +95,14 @@ def relative_entropy(h: SectorExpansion, tolerance: float, error: float) -> Entr
         _eights(MORE_ANGLES * (2 * h.harmonics + 1)),
     )
     for refinement in range(REFINEMENTS + 1):
-        value, doubts, norms = _entropy_sums(h, rule, width, error)
+        value, doubts, others = _entropy_sums(h, rule, width, error)
         if refinement == REFINEMENTS or max(doubts) <= tolerance:
             break
         rule = Rule(*(
             _eights(FINER * n) if doubt > tolerance else n
             for n, doubt in zip(rule, doubts, strict=True)
         ))  # fmt: skip
-    return Entropy(value, sum(doubts) + ROUNDING * abs(value), *norms)
+    return Entropy(value, sum(doubts) + ROUNDING * abs(value), *others)
 
 
 def _eights(n: float) -> int:
@@ -87,14 +111,18 @@ def _eights(n: float) -> int:
 
 def _entropy_sums(
     h: SectorExpansion, rule: Rule, width: float, error: float
-) -> tuple[float, tuple[float, float, float], tuple[float, float]]:
-    """The entropy, errors in r, φ and α − φ, and the two norms of ln h."""
+) -> tuple[float, tuple[float, float, float], tuple[Array, float, float, float]]:
+    """The entropy, errors in r, φ and α − φ, and the rest of an `Entropy`."""
     points, weights = clenshaw_curtis(rule.radii)
     r = 0.5 * width * (points + 1.0)
     measure = 0.5 * width * r * np.exp(-0.5 * r**2)
-    rows = np.concatenate([
-        _ring_means(values, error) for values in ring_values(h, r, rule, less=1.0)
-    ])  # fmt: skip
+    error, n_sectors = max(error, LEAST), len(h.values)
+    rows = np.concatenate(
+        [
+            _ring_means(values, error, n_sectors)
+            for values in ring_values(h, r, rule, less=1.0)
+        ]
+    )
     means = rows[: r.size].T * measure
     full, fewer_turns, fewest_turns, fewer_angles, fewest_angles = means[:5] @ weights
     half, quarter = (
@@ -106,9 +134,10 @@ def _entropy_sums(
         _left(full, fewer_turns, fewest_turns),
         _left(full, fewer_angles, fewest_angles),
     )
-    both, round_part = means[5] @ weights, means[6] @ weights
-    norms = math.sqrt(round_part), math.sqrt(max(both - round_part, 0.0))
-    return float(full), doubts, norms
+    empty, both, *squares = np.maximum(means[5:] @ weights, 0.0)
+    rest = max(both - squares[0] - 2.0 * sum(squares[1:]), 0.0)
+    others = np.sqrt(squares), math.sqrt(rest), math.sqrt(error), float(empty)
+    return float(full), doubts, others
 
 
 def _left(full: float, half: float, quarter: float) -> float:
@@ -117,15 +146,16 @@ def _left(full: float, half: float, quarter: float) -> float:
     return float(change * min(1.0, SAFETY * change / max(before, 1e-300)))
 
 
-def _ring_means(excess: Array, error: float) -> Array:
-    """Of every ring the entropy by all nodes and by fewer, and of ln h two squares.
+def _ring_means(excess: Array, error: float, n_sectors: int) -> Array:
+    """Of every ring the entropy by all nodes and by fewer, and of ln h squares.
 
-    All nodes, every second and fourth φ, every second and fourth α − φ; then the mean
-    of (ln h)², and that of the square of its mean over φ.
+    All nodes, every second and fourth φ, every second and fourth α − φ; then the share
+    where h is less than the root of the error, the mean of (ln h)², and that of its
+    parts in all sectors M ≥ 0.
     """
     flat = excess.reshape(-1)
     out = np.empty_like(flat)
-    entropy_integrand(flat, max(error, 1e-300), out)
+    entropy_integrand(flat, error, out)
     integrand, logarithm = out.reshape(excess.shape), flat.reshape(excess.shape)
     parts = (
         integrand, integrand[:, ::2], integrand[:, ::4],
@@ -133,8 +163,10 @@ def _ring_means(excess: Array, error: float) -> Array:
     )  # fmt: skip
     means = [part.mean(axis=(1, 2)) for part in parts]
     square: Any = np.einsum("rpq,rpq->r", logarithm, logarithm) / logarithm[0].size
-    round_part: Any = np.mean(logarithm.mean(axis=1) ** 2, axis=1)
-    return np.stack([*means, square, round_part], axis=1)
+    empty = np.mean(logarithm <= 0.5 * math.log(error), axis=(1, 2))
+    waves = fft.rfft(logarithm, axis=1, norm="forward")[:, :n_sectors]
+    parts_of_square = np.mean(waves.real**2 + waves.imag**2, axis=2)
+    return np.column_stack([*means, empty, square, parts_of_square])
 
 
 def ring_values(

@@ -13,7 +13,7 @@ from fpsolve._kernels.sector_evolution import (
     Allowance,
     evolve_sector,
 )
-from fpsolve._kernels.sectors import Equation
+from fpsolve._kernels.sectors import Equation, distance
 from fpsolve._support.arrays import Array
 from fpsolve.errors import MemoryLimitError
 from fpsolve.grids.row_sums import MOMENTS
@@ -24,15 +24,23 @@ from fpsolve.spectral.evolution.expansion import Limits
 from fpsolve.spectral.evolution.projection import DensityStart, GaussianStart
 from fpsolve.spectral.evolution.quadratic import quadratic
 from fpsolve.spectral.evolution.sector_expansion import SectorExpansion, moments
-from fpsolve.spectral.evolution.sector_start import of_density, of_gaussian
+from fpsolve.spectral.evolution.sector_start import (
+    OF_MOMENTS,
+    of_density,
+    of_gaussian,
+)
 from fpsolve.spectral.evolution.solution import SpectralSolution
 from fpsolve.spectral.work import OutOfWork, Work
 
 __all__ = ["applies", "in_sectors"]
 
-# First share of the tolerance that all sectors together may neglect, and its growth
-# where the bounds are above the tolerance.
-SHARE, TIGHTER, LEVELS = 0.2, 0.1, 3
+# What all sectors together may neglect at first, in units of the tolerance, which errors
+# are well below; and how much less they may where errors are above the tolerance.
+SHARE, TIGHTER, LEVELS = 4.0, 0.1, 3
+# Errors are smaller than their bounds as far as a coarser evolution of the sectors of
+# the moments, and of these thirds of all, tells: by how much it is coarser, how often
+# the errors may be as large as it tells, and the least share of the bounds that counts.
+PROBES, COARSER, SAFETY, LEAST = (1, 2), 100.0, 3.0, 0.01
 # What the start may lack of this, in every sector and of all that are left out.
 OF_START = 0.01
 # Of the tolerance, what the quadrature of the entropy may be wrong by.
@@ -170,7 +178,39 @@ class Run:
             SectorExpansion(tuple(v), tuple(n))
             for v, n in zip(values, counts, strict=True)
         )
-        return found, errors
+        return found, errors * self.shares(first, found)[:, None]
+
+    def shares(
+        self, first: SectorExpansion, found: tuple[SectorExpansion, ...]
+    ) -> Array:
+        """At every stop, which share of their bounds the errors are taken to be.
+
+        Bounds of losses that are added up as if they all pointed in one direction are
+        much larger than the errors, which are known of a coarser evolution: they are
+        its distances from the present one. The share that they have of its bounds, the
+        largest of a few sectors, times `SAFETY`, is never taken as above one.
+        """
+        n_sectors = len(first.values)
+        thirds = (third * n_sectors // 3 for third in PROBES)
+        probes = sorted({*range(OF_MOMENTS), *thirds})
+        largest = np.zeros(self.stops.size)
+        for index in probes:
+            c, count, error, reached = (
+                first.values[index],
+                first.counts[index],
+                0.0,
+                0.0,
+            )
+            for place, stop in enumerate(self.stops):
+                length = float(stop) - reached
+                c, count, more = self.evolved(
+                    c, count, index, length, 0, n_sectors, COARSER
+                )
+                error, reached = error + more, float(stop)
+                fine = found[place].values[index], found[place].counts[index]
+                away = distance(c, count, *fine)
+                largest[place] = max(largest[place], away / error if error else 0.0)
+        return np.clip(SAFETY * largest, LEAST, 1.0)
 
     def evolved(
         self,
@@ -180,9 +220,10 @@ class Run:
         length: float,
         held: int,
         n_sectors: int,
+        coarser: float = 1.0,
     ) -> tuple[Array, Limits, float]:
         """One sector a length later, and its error; see `evolve_sector`."""
-        norm = self.neglected / math.sqrt(2.0 * n_sectors)
+        norm = coarser * self.neglected / math.sqrt(2.0 * n_sectors)
         over = float(self.stops[-1]) or 1.0
         left = self.work.allowed - self.work.spent
         largest = (self.budget - held) / (BYTES * ARRAYS)
@@ -213,16 +254,12 @@ class Run:
             values["relative_entropy"] = self.start.relative_entropy
             bounds["relative_entropy"] = 0.0
         else:
+            lacking = OF_START * self.neglected
             others = math.sqrt(2.0) * float(np.linalg.norm(errors[1:]))
-            others += OF_START * self.neglected
-            both = math.hypot(errors[0], others)
+            both = math.hypot(errors[0], others + lacking)
             found = rings.relative_entropy(h, SHARE_OF_ENTROPY * tolerance, both)
             values["relative_entropy"] = found.value
-            # dH = ∫ ln h dh dμ, and what is below the error counts as the error.
-            bounds["relative_entropy"] = (
-                errors[0] * found.round_norm + others * found.other_norm
-                + both + found.doubt
-            )  # fmt: skip
+            bounds["relative_entropy"] = found.error(errors, lacking) + found.doubt
         for name, value in values.items():
             bounds[name] += ROUNDING * max(1.0, abs(value))
         return values, bounds
