@@ -23,7 +23,7 @@ BEYOND, MORE = 12.0, 40
 LARGEST = 1e200
 # Of a half axis.
 PRECISION = 1e-2
-# Where the ellipse is nearly a circle its polynomials grow as (half axes / focus)^n, and
+# Where the ellipse is nearly a circle its polynomials grow as (half axes/focus)^n, and
 # it takes this many terms per unit of half axes times arclength; where it is FLAT times
 # as wide as high, those above are enough.
 ROUND, FLAT = 2.2, 4.0

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -34,8 +35,8 @@ from fpsolve.spectral.work import OutOfWork, Work
 
 __all__ = ["applies", "in_sectors"]
 
-# What all sectors together may neglect at first, in units of the tolerance, which errors
-# are well below; and how much less they may where errors are above the tolerance.
+# What all sectors together may neglect at first, in units of the tolerance, below which
+# errors stay then; and how much less they may where errors are above it.
 SHARE, TIGHTER, LEVELS = 4.0, 0.1, 3
 # Errors are smaller than their bounds as far as a coarser evolution of the sectors of
 # the moments, and of these thirds of all, tells: by how much it is coarser, how often
@@ -125,6 +126,8 @@ class Run:
     ) -> None:
         self.model, self.start, self.stops = model, start, stops
         self.neglected, self.budget, self.work = neglected, budget, work
+        # Bytes of what is kept.
+        self.held = 0
         self.sigma = quadratic(model).sigma1
         scale = 1.0 / (math.sqrt(2.0) * self.sigma)
         self.equation = Equation(scale, model.diffusivity, ROOTS)
@@ -154,26 +157,15 @@ class Run:
         self, first: SectorExpansion
     ) -> tuple[tuple[SectorExpansion, ...], Array]:
         """At every stop, and the error of every sector there; shape (stops, M)."""
-        n_sectors = len(first.values)
-        errors = np.zeros((self.stops.size, n_sectors))
+        errors = np.zeros((self.stops.size, len(first.values)))
         values: list[list[Array]] = [[] for _ in self.stops]
         counts: list[list[Limits]] = [[] for _ in self.stops]
-        held = 0
-        for index in range(n_sectors):
-            c, count, error, reached = (
-                first.values[index],
-                first.counts[index],
-                0.0,
-                0.0,
-            )
-            for place, stop in enumerate(self.stops):
-                length = float(stop) - reached
-                c, count, more = self.evolved(c, count, index, length, held, n_sectors)
-                error, reached = error + more, float(stop)
+        for index in range(len(first.values)):
+            for place, (c, count, error) in enumerate(self.stages(first, index)):
                 errors[place, index] = error
                 values[place].append(c)
                 counts[place].append(count)
-                held += BYTES * int(count.sum())
+                self.held += BYTES * int(count.sum())
         found = tuple(
             SectorExpansion(tuple(v), tuple(n))
             for v, n in zip(values, counts, strict=True)
@@ -195,44 +187,38 @@ class Run:
         probes = sorted({*range(OF_MOMENTS), *thirds})
         largest = np.zeros(self.stops.size)
         for index in probes:
-            c, count, error, reached = (
-                first.values[index],
-                first.counts[index],
-                0.0,
-                0.0,
-            )
-            for place, stop in enumerate(self.stops):
-                length = float(stop) - reached
-                c, count, more = self.evolved(
-                    c, count, index, length, 0, n_sectors, COARSER
-                )
-                error, reached = error + more, float(stop)
+            stages = self.stages(first, index, COARSER)
+            for place, (c, count, error) in enumerate(stages):
                 fine = found[place].values[index], found[place].counts[index]
                 away = distance(c, count, *fine)
                 largest[place] = max(largest[place], away / error if error else 0.0)
         return np.clip(SAFETY * largest, LEAST, 1.0)
 
+    def stages(
+        self, first: SectorExpansion, index: int, coarser: float = 1.0
+    ) -> Iterator[tuple[Array, Limits, float]]:
+        """One sector at every stop, and its error there."""
+        norm = coarser * self.neglected / math.sqrt(2.0 * len(first.values))
+        c, count = first.values[index], first.counts[index]
+        error, reached = 0.0, 0.0
+        for stop in map(float, self.stops):
+            c, count, more = self.evolved(c, count, index, stop - reached, norm)
+            error, reached = error + more, stop
+            yield c, count, error
+
     def evolved(
-        self,
-        c: Array,
-        counts: Limits,
-        index: int,
-        length: float,
-        held: int,
-        n_sectors: int,
-        coarser: float = 1.0,
+        self, c: Array, counts: Limits, index: int, length: float, norm: float
     ) -> tuple[Array, Limits, float]:
         """One sector a length later, and its error; see `evolve_sector`."""
-        norm = coarser * self.neglected / math.sqrt(2.0 * n_sectors)
         over = float(self.stops[-1]) or 1.0
         left = self.work.allowed - self.work.spent
-        largest = (self.budget - held) / (BYTES * ARRAYS)
+        largest = (self.budget - self.held) / (BYTES * ARRAYS)
         allowance = Allowance(norm, over, largest, left)
         c, counts, error, work, ended = evolve_sector(
             c, counts, index, self.equation, length, allowance
         )
         if ended == TOO_LARGE:
-            required = held + BYTES * ARRAYS * int(counts.sum())
+            required = self.held + BYTES * ARRAYS * int(counts.sum())
             raise MemoryLimitError(required, int(self.budget), "ask for fewer `s`")
         if ended == DIVERGED:
             raise ArithmeticError("the Chebyshev series did not converge.")
