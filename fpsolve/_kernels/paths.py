@@ -2,9 +2,10 @@
 
 Paths are taken in blocks of `LANES`. The numbers of a block lie in one flat work
 array `w`, each quantity in a row of its own, so that the compiler sees that no two
-loops overlap and turns every loop into vector instructions. A block is always worked
-through as a whole, its unused lanes too: a path is then bitwise the same whatever its
-neighbours are.
+loops overlap and turns every loop into vector instructions. Random numbers lie in an
+array of their own, for a row whose number is not known beforehand could be any of `w`.
+A block is always worked through as a whole, its unused lanes too: a path is then
+bitwise the same whatever its neighbours are.
 
 A step of length h of a smooth path starts at (ξ, α, κ) and takes the force at the point
 that half a step along the tangent leads to. Without it, (κ, α, ∫α) at the end of the
@@ -27,25 +28,24 @@ from typing import Any, NamedTuple
 import numpy as np
 from numba import prange
 
+from fpsolve._kernels.bits import bits_of, number_of
 from fpsolve._kernels.compiling import njit
 
 LANES = 64
 # Rows of the work array: position, tangent, full turns of the angle.
 XI1, XI2, COSINE, SINE, TURNS = (LANES * row for row in range(5))
-# Four rows of standard normal numbers, then the angle by which noise turns the path.
-NORMAL, ANGLE = 5 * LANES, 9 * LANES
-FORCE1, FORCE2 = 10 * LANES, 11 * LANES
-KEPT1, KEPT2, KEPT3, KEPT4, KEPT5 = (LANES * row for row in range(12, 17))
+ANGLE, FORCE1, FORCE2 = (LANES * row for row in range(5, 8))
+KEPT1, KEPT2, KEPT3, KEPT4, KEPT5 = (LANES * row for row in range(8, 13))
 # Weights of what the nozzle of a path moves otherwise than γ.
-WEIGHT1, WEIGHT2 = 17 * LANES, 18 * LANES
-N_ROWS = 19
+WEIGHT1, WEIGHT2 = 13 * LANES, 14 * LANES
+N_ROWS = 15
 N_STATE = 5
-# Further rows for smooth paths: the curvature, noise of κ, of α and of ᾱ, and three
-# standard normal numbers for each of four steps.
-KAPPA, NOISE1, NOISE2, NOISE3, NUMBERS = (LANES * row for row in range(19, 24))
-N_NUMBERS, N_STEPS = 3, 4
-N_SMOOTH_ROWS = N_ROWS + 4 + N_NUMBERS * N_STEPS
+# Further rows for smooth paths: the curvature, noise of κ, of α and of ᾱ.
+KAPPA, NOISE1, NOISE2, NOISE3 = (LANES * row for row in range(15, 19))
+N_SMOOTH_ROWS = N_ROWS + 4
 N_SMOOTH_STATE = N_STATE + 1
+# Steps served by one group of random numbers, and normal numbers of a smooth step.
+N_STEPS, N_NUMBERS = 4, 3
 # Powers 0 to 4 of each component of ξ, and their products of at most that degree.
 N_POWERS, N_PRODUCTS = 5, 15
 
@@ -58,9 +58,15 @@ WEYL0, WEYL1 = 0x9E3779B9, 0xBB67AE85
 UNIT = 2.0**-32
 # Bits of sqrt(1/2), and where the exponent of a double begins.
 ROOT_HALF, EXPONENT = 0x3FE6A09E667F3BCD, 52
-LN2, TURN = math.log(2.0), 2.0 * math.pi
+# A whole number below 2³² in the last bits of 2⁵² makes 2⁵² more of it; one of either
+# sign, added to the bits of 3·2⁵¹, makes 3·2⁵¹ more of it.
+WHOLE, SIGNED_WHOLE = 2.0**52, 1.5 * 2.0**52
+BITS_OF_WHOLE, BITS_OF_SIGNED_WHOLE = 0x4330000000000000, 0x4338000000000000
+LN2, TURN, QUARTER_TURN = math.log(2.0), 2.0 * math.pi, 0.5 * math.pi
 # tanh(16) is one to 3e-14; beyond, the force is cut to this without effect.
 FARTHEST = 16.0
+# e^{-x} is more than this part of cosh x up to twice `FARTHEST`.
+LEAST = 1e-28
 # Below this distance the direction of a force ξ/|ξ| fades out; |ξ|² must not underflow.
 NEAREST = 1e-150
 
@@ -187,6 +193,16 @@ S0, S1, S2, S3, S4, S5 = _near_best(
 L0, L1, L2, L3, L4, L5, L6 = _near_best(
     lambda k: Fraction(1, 2 * k + 3), 6, (3 - 2 * math.sqrt(2)) ** 2
 )
+# -4 artanh x = x M(y).
+M0, M1, M2, M3, M4, M5, M6, M7 = (-4 * c for c in (1, L0, L1, L2, L3, L4, L5, L6))
+# The first two without the leading terms written out, for |x| <= π/2: cos x = D(y) and
+# sin x = x E(y).
+D0, D1, D2, D3, D4, D5, D6, D7, D8, D9 = _near_best(
+    lambda k: Fraction((-1) ** k, math.factorial(2 * k)), 9, QUARTER_TURN**2
+)
+E0, E1, E2, E3, E4, E5, E6, E7, E8 = _near_best(
+    lambda k: Fraction((-1) ** k, math.factorial(2 * k + 1)), 8, QUARTER_TURN**2
+)
 
 
 @njit(cache=True, forceinline=True, fastmath={"contract"}, error_model="numpy")
@@ -215,58 +231,97 @@ def _pade_of_tanh(n):
 _P, _Q = _pade_of_tanh(8)
 P1, P2, P3 = _P[1:]
 Q1, Q2, Q3, Q4 = _Q[1:]
+# tan(πr/2) = r F(r²)/G(r²): the same at an imaginary argument.
+F0, F1, F2, F3 = (
+    QUARTER_TURN * p * (-(QUARTER_TURN**2)) ** k for k, p in enumerate(_P)
+)
+G1, G2, G3, G4 = (q * (-(QUARTER_TURN**2)) ** k for k, q in enumerate(_Q) if k > 0)
 
 
 @njit(cache=True, forceinline=True, fastmath={"contract"}, error_model="numpy")
-def tanh_ratio(z):
-    """Numbers n, d with tanh(√z)/√z = n/d, to rounding for z up to `FARTHEST`²."""
-    y = z / 16
+def hyperbolic(y):
+    """Multiples of cosh x, of 1 and of sinh(x)/x, for y = (x/8)².
+
+    To rounding, and to 5e-15 of cosh x for x up to twice `FARTHEST`. The approximant
+    of tanh(x/8) gives them for x/4, from where x is doubled twice.
+    """
     n = 1 + y * (P1 + y * (P2 + y * P3))
     d = 1 + y * (Q1 + y * (Q2 + y * (Q3 + y * Q4)))
-    # tanh 2x = 2 tanh x / (1 + tanh² x), twice.
-    n, d = n * d, d * d + y * n * n
-    return n * d, d * d + 4 * y * n * n
+    square, other = d * d, y * n * n
+    cosh, one, sinh = square + other, square - other, n * d
+    square = one * one
+    cosh, one, sinh = (cosh + cosh) * cosh - square, square, cosh * sinh
+    square = one * one
+    return (cosh + cosh) * cosh - square, square, cosh * sinh
 
 
 @njit(cache=True, forceinline=True, fastmath={"contract"}, error_model="numpy")
-def turns_taken(sign0, sign1, direction):
-    """Four times the full turns in a rotation by less than π towards `direction`.
+def half_angle(turn):
+    """Multiples of cos(π turn) and sin(π turn) for -1/2 <= turn <= 1/2."""
+    y = turn * turn
+    n = turn * (F0 + y * (F1 + y * (F2 + y * F3)))
+    d = 1 + y * (G1 + y * (G2 + y * (G3 + y * G4)))
+    return (d - n) * (d + n), (n + n) * d
 
-    The angle has made one when the tangent passes the negative ξ1 axis; `sign0` and
-    `sign1` are the signs of its second component before and after.
+
+@njit(cache=True, forceinline=True, fastmath={"contract"}, error_model="numpy")
+def cosine_sine_of_quarter(x):
+    """cos and sin of an angle in [-π/2, π/2]."""
+    y = x * x
+    c = D4 + y * (D5 + y * (D6 + y * (D7 + y * (D8 + y * D9))))
+    s = E4 + y * (E5 + y * (E6 + y * (E7 + y * E8)))
+    c = D0 + y * (D1 + y * (D2 + y * (D3 + y * c)))
+    return c, x * (E0 + y * (E1 + y * (E2 + y * (E3 + y * s))))
+
+
+@njit(cache=True, forceinline=True, fastmath={"contract"}, error_model="numpy")
+def minus_twice_logarithm(number, n_halvings):
+    """-2 ln of a positive normal number after so many halvings."""
+    bits = bits_of(number)
+    whole = (bits - ROOT_HALF) >> EXPONENT
+    # The mantissa m lies in [√½, √2): ln m = 2 artanh((m - 1)/(m + 1)).
+    m = number_of(bits - (whole << EXPONENT))
+    exponent = number_of(BITS_OF_SIGNED_WHOLE + whole) - (SIGNED_WHOLE + n_halvings)
+    x = (m - 1) / (m + 1)
+    y = x * x
+    series = M4 + y * (M5 + y * (M6 + y * M7))
+    series = M0 + y * (M1 + y * (M2 + y * (M3 + y * series)))
+    return exponent * (-2 * LN2) + x * series
+
+
+@njit(cache=True, forceinline=True, fastmath={"contract"}, error_model="numpy")
+def turns_taken(before, after, direction):
+    """Full turns in a rotation by at most π towards `direction`: -1, 0 or 1.
+
+    The angle has made one when the tangent passes the negative ξ1 axis; the signs of
+    its second component, before and after, tell.
     """
-    return (sign0 - sign1) * (1 + math.copysign(1.0, direction) * sign0)
+    first, last = math.copysign(0.5, before), math.copysign(0.5, after)
+    return first + math.copysign(0.5, direction) if first != last else 0.0
 
 
 @njit(cache=True, fastmath={"contract"}, error_model="numpy")
-def standard_normals(path, group, key0, key1, w, bits):
+def standard_normals(path, group, key0, key1, words, normals):
     """Four standard normal numbers for every lane, by Box and Muller's method.
 
-    The counter is (path, group); one group serves four steps.
+    The counter is (path, group); one group serves four steps. `words` is for whole
+    numbers, of the shape (4, LANES) of `normals`.
     """
     for i in range(LANES):
         low, high = (path + i) & MASK, ((path + i) >> 32) & MASK
         c0, c1, c2, c3 = philox(low, high, group, 0, key0, key1)
-        w[NORMAL + i] = (c0 + 0.5) * UNIT
-        w[NORMAL + LANES + i] = (c1 + 0.5) * UNIT
-        w[NORMAL + 2 * LANES + i] = (c2 + 0.5) * UNIT
-        w[NORMAL + 3 * LANES + i] = (c3 + 0.5) * UNIT
-    for pair in (NORMAL, NORMAL + 2 * LANES):
+        words[0, i], words[1, i] = c0 | BITS_OF_WHOLE, c1 | BITS_OF_WHOLE
+        words[2, i], words[3, i] = c2 | BITS_OF_WHOLE, c3 | BITS_OF_WHOLE
+    for pair in (0, 2):
         for i in range(LANES):
-            exponent = (bits[pair + i] - ROOT_HALF) >> EXPONENT
-            bits[KEPT1 + i] = bits[pair + i] - (exponent << EXPONENT)
-            w[KEPT2 + i] = exponent
-        for i in range(LANES):
-            # The mantissa m lies in [√½, √2): ln m = 2 artanh((m - 1)/(m + 1)).
-            x = (w[KEPT1 + i] - 1) / (w[KEPT1 + i] + 1)
-            y = x * x
-            series = L3 + y * (L4 + y * (L5 + y * L6))
-            series = L0 + y * (L1 + y * (L2 + y * series))
-            logarithm = w[KEPT2 + i] * LN2 + 2 * x * (1 + y * series)
-            radius = math.sqrt(-2 * logarithm)
-            c, s = cosine_sine(TURN * (w[pair + LANES + i] - 0.5))
-            w[pair + i] = radius * c
-            w[pair + LANES + i] = radius * s
+            # Uniform in (0, 1) is (c + 1/2)/2³², for the length and for the angle.
+            uniform, centred = number_of(words[pair, i]), number_of(words[pair + 1, i])
+            radius = math.sqrt(minus_twice_logarithm(uniform - (WHOLE - 0.5), 32.0))
+            angle = (centred - (WHOLE + 0.5 / UNIT)) * (TURN * UNIT) + 0.5 * TURN * UNIT
+            # In [-π, π]: its cosine is the sine of this, its sine has its sign.
+            c, s = cosine_sine_of_quarter(QUARTER_TURN - abs(angle))
+            normals[pair, i] = radius * s
+            normals[pair + 1, i] = math.copysign(radius, angle) * c
 
 
 @njit(cache=True, fastmath={"contract"}, error_model="numpy")
@@ -350,44 +405,36 @@ def limit_force(quarter, w):
 
 
 @njit(cache=True, fastmath={"contract"}, error_model="numpy")
-def angle_block(normal, noise_scale, w):
-    """Angle of the noise: A √ds times the standard normal number of this step."""
-    for i in range(LANES):
-        w[ANGLE + i] = noise_scale * w[normal + i]
+def kick_block(quarter, scale, number, normals, w):
+    """R½ D R½ at fixed ξ, D by `scale` times a row of normal numbers.
 
+    With w = u ∇B, u = tanh(|∇B| ds/4)/|∇B|, R½ is τ ← (τ - w)/(1 - w̄τ) of complex τ,
+    and D turns by θ. The product of the three is τ ← (aτ + b)/(b̄τ + ā), which turns τ
+    by twice the argument of a + bτ̄. With X = |∇B| ds/2 this is a multiple of
 
-@njit(cache=True, fastmath={"contract"}, error_model="numpy")
-def kick_block(quarter, w):
-    """R½ D R½ at fixed ξ: closed-form rotations around the one by noise.
+        cos(θ/2) (cosh X - sinh(X)/|∇B| ∇B·τ)
+        + i (sin(θ/2) - cos(θ/2) sinh(X)/|∇B| ∇B·τ⊥) ,
 
-    With u = tanh(|∇B| ds/4)/|∇B| = n/d, R½ turns τ by twice the argument of
-    (1 - u ∇B·τ, -u ∇B·τ⊥); only directions matter, so the one division is at the end.
+    of which only the direction matters. Full turns of θ apart, the real part is not
+    negative: the angle that τ turns by has the sign of the imaginary part, and is at
+    most π.
     """
+    eighth, fraction = 0.25 * quarter, scale / TURN
     for i in range(LANES):
         c, s, f1, f2 = w[COSINE + i], w[SINE + i], w[FORCE1 + i], w[FORCE2 + i]
-        n, d = tanh_ratio((f1 * f1 + f2 * f2) * (quarter * quarter))
-        f1, f2 = quarter * n * f1, quarter * n * f2
-        x, y = d - (f1 * c + f2 * s), f1 * s - f2 * c
-        p, q, m = (x - y) * (x + y), 2 * x * y, x * x + y * y
-        c1, s1 = c * p - s * q, s * p + c * q
-        sign, sign1 = math.copysign(1.0, s), math.copysign(1.0, s1)
-        quarters = turns_taken(sign, sign1, y)
-
-        turns = math.floor(w[ANGLE + i] / TURN + 0.5)
-        c, s = cosine_sine(w[ANGLE + i] - turns * TURN)
-        c2, s2 = c1 * c - s1 * s, s1 * c + c1 * s
-        sign = math.copysign(1.0, s2)
-        quarters += turns_taken(sign1, sign, s)
-
-        x, y = d * m - (f1 * c2 + f2 * s2), f1 * s2 - f2 * c2
-        m = 1 / (m * (x * x + y * y))
-        p, q = m * (x - y) * (x + y), 2 * m * x * y
-        c3, s3 = c2 * p - s2 * q, s2 * p + c2 * q
-        quarters += turns_taken(sign, math.copysign(1.0, s3), y)
+        cosh, one, sinh = hyperbolic((f1 * f1 + f2 * f2) * (eighth * eighth))
+        sinh *= 2 * quarter
+        angle = fraction * normals[number, i]
+        turns = math.floor(angle + 0.5)
+        half_c, half_s = half_angle(angle - turns)
+        x = half_c * max(cosh - sinh * (f1 * c + f2 * s), LEAST)
+        y = half_s * one + half_c * sinh * (f1 * s - f2 * c)
         # Rounding moves the tangent off the circle; one Newton step brings it back.
-        length = 1.5 - 0.5 * (c3 * c3 + s3 * s3)
-        w[COSINE + i], w[SINE + i] = length * c3, length * s3
-        w[TURNS + i] += turns + 0.25 * quarters
+        length = (1.5 - 0.5 * (c * c + s * s)) / (x * x + y * y)
+        p, q = length * ((x - y) * (x + y)), length * ((x + x) * y)
+        c1, s1 = c * p - s * q, s * p + c * q
+        w[COSINE + i], w[SINE + i] = c1, s1
+        w[TURNS + i] += turns + turns_taken(s, s1, y)
 
 
 @njit(cache=True, fastmath={"contract"}, error_model="numpy")
@@ -398,49 +445,49 @@ def rotate_block(w):
         x, y = cosine_sine(w[ANGLE + i] - turns * TURN)
         c, s = w[COSINE + i], w[SINE + i]
         c1, s1 = c * x - s * y, s * x + c * y
-        sign, sign1 = math.copysign(1.0, s), math.copysign(1.0, s1)
+        # Rounding moves the tangent off the circle; one Newton step brings it back.
         length = 1.5 - 0.5 * (c1 * c1 + s1 * s1)
         w[COSINE + i], w[SINE + i] = length * c1, length * s1
-        w[TURNS + i] += turns + 0.25 * turns_taken(sign, sign1, y)
+        w[TURNS + i] += turns + turns_taken(s, s1, y)
 
 
 @njit(cache=True, fastmath={"contract"}, error_model="numpy")
-def splitting_step(ds, kind, first, second, shifts, w):
+def splitting_step(ds, potential, shifts, scale, number, normals, w):
     """T½ R½ D R½ T½."""
     translate_block(0.5 * ds, shifts[0, 0], shifts[0, 1], w)
-    force_block(kind, first, second, w)
+    force_block(*potential, w)
     limit_force(0.25 * ds, w)
-    kick_block(0.25 * ds, w)
+    kick_block(0.25 * ds, scale, number, normals, w)
     translate_block(0.5 * ds, shifts[1, 0], shifts[1, 1], w)
 
 
 @njit(cache=True, fastmath={"contract"}, error_model="numpy")
-def euler_step(ds, kind, first, second, shifts, w):
+def euler_step(ds, potential, shifts, scale, number, normals, w):
     """Euler-Maruyama: both drifts at the beginning of the step."""
-    force_block(kind, first, second, w)
+    force_block(*potential, w)
     for i in range(LANES):
         drift = w[FORCE1 + i] * w[SINE + i] - w[FORCE2 + i] * w[COSINE + i]
-        w[ANGLE + i] += ds * drift
+        w[ANGLE + i] = scale * normals[number, i] + ds * drift
     translate_block(ds, shifts[0, 0] + shifts[1, 0], shifts[0, 1] + shifts[1, 1], w)
     rotate_block(w)
 
 
 @njit(cache=True, fastmath={"contract"}, error_model="numpy")
-def heun_step(ds, kind, first, second, shifts, w):
+def heun_step(ds, potential, shifts, scale, number, normals, w):
     """Stochastic Heun: mean of the drifts at both ends of an Euler-Maruyama step."""
     for i in range(LANES):
         w[KEPT1 + i], w[KEPT2 + i] = w[COSINE + i], w[SINE + i]
-        w[KEPT3 + i], w[KEPT4 + i] = w[ANGLE + i], w[TURNS + i]
+        w[KEPT3 + i], w[KEPT4 + i] = scale * normals[number, i], w[TURNS + i]
     half = 0.5 * ds
     shift1, shift2 = shifts[0, 0] + shifts[1, 0], shifts[0, 1] + shifts[1, 1]
-    force_block(kind, first, second, w)
+    force_block(*potential, w)
     for i in range(LANES):
         drift = w[FORCE1 + i] * w[SINE + i] - w[FORCE2 + i] * w[COSINE + i]
         w[KEPT5 + i] = half * drift
-        w[ANGLE + i] += ds * drift
+        w[ANGLE + i] = w[KEPT3 + i] + ds * drift
     translate_block(ds, shift1, shift2, w)
     rotate_block(w)
-    force_block(kind, first, second, w)
+    force_block(*potential, w)
     for i in range(LANES):
         c, s = w[COSINE + i], w[SINE + i]
         drift = w[FORCE1 + i] * s - w[FORCE2 + i] * c
@@ -486,12 +533,12 @@ def advance_paths(noise, ds, potential, shifts, method, trace, state):
     state : ndarray, shape (5, n_paths)
         ξ1, ξ2, cos α, sin α and full turns; changed in place.
     """
-    path, step, key, noise_scale = noise
+    path, step, key, scale = noise
     common, own, weights = shifts
     n_paths, n_steps, phased = state.shape[1], common.shape[0], weights.shape[1] > 0
     for block in prange((n_paths + LANES - 1) // LANES):
-        w = np.zeros(N_ROWS * LANES)
-        bits = w.view(np.int64)
+        w, normals = np.zeros(N_ROWS * LANES), np.zeros((N_STEPS, LANES))
+        words = np.zeros((N_STEPS, LANES), np.int64)
         start = block * LANES
         n_lanes = min(LANES, n_paths - start)
         load_block(state, start, n_lanes, w)
@@ -501,16 +548,15 @@ def advance_paths(noise, ds, potential, shifts, method, trace, state):
             number = (step + j) & 3
             if j == 0 or number == 0:
                 group = (step + j) >> 2
-                standard_normals(path + start, group, key[0], key[1], w, bits)
-            angle_block(NORMAL + number * LANES, noise_scale, w)
+                standard_normals(path + start, group, *key, words, normals)
             if phased:
                 displace_block(own[j, 0], w)
             if method == SPLITTING:
-                splitting_step(ds, *potential, common[j], w)
+                splitting_step(ds, potential, common[j], scale, number, normals, w)
             elif method == EULER_MARUYAMA:
-                euler_step(ds, *potential, common[j], w)
+                euler_step(ds, potential, common[j], scale, number, normals, w)
             else:
-                heun_step(ds, *potential, common[j], w)
+                heun_step(ds, potential, common[j], scale, number, normals, w)
             if phased:
                 displace_block(own[j, 1], w)
             if trace.shape[0] > 0:
@@ -519,23 +565,24 @@ def advance_paths(noise, ds, potential, shifts, method, trace, state):
 
 
 @njit(cache=True, parallel=True, fastmath={"contract"}, error_model="numpy")
-def fill_normals(path, group, key, normals):
+def fill_normals(path, group, key, filled):
     """Noise of the four steps of a group: standard normal, one column a path.
 
     Parameters
     ----------
     path, group : int
     key : (int, int)
-    normals : ndarray, shape (4, n_paths)
+    filled : ndarray, shape (4, n_paths)
     """
-    n_paths = normals.shape[1]
+    n_paths = filled.shape[1]
     for block in prange((n_paths + LANES - 1) // LANES):
-        w = np.zeros(N_ROWS * LANES)
+        normals = np.zeros((N_STEPS, LANES))
+        words = np.zeros((N_STEPS, LANES), np.int64)
         start = block * LANES
-        standard_normals(path + start, group, key[0], key[1], w, w.view(np.int64))
-        for number in range(4):
+        standard_normals(path + start, group, *key, words, normals)
+        for number in range(N_STEPS):
             for i in range(min(LANES, n_paths - start)):
-                normals[number, start + i] = w[NORMAL + number * LANES + i]
+                filled[number, start + i] = normals[number, i]
 
 
 @njit(cache=True, parallel=True, fastmath={"contract"}, error_model="numpy")
@@ -552,16 +599,16 @@ def kick_paths(quarter, angles, forces, state):
     """
     n_paths = state.shape[1]
     for block in prange((n_paths + LANES - 1) // LANES):
-        w = np.zeros(N_ROWS * LANES)
+        w, given = np.zeros(N_ROWS * LANES), np.zeros((1, LANES))
         start = block * LANES
         n_lanes = min(LANES, n_paths - start)
         load_block(state, start, n_lanes, w)
         for i in range(n_lanes):
-            w[ANGLE + i] = angles[start + i]
+            given[0, i] = angles[start + i]
             w[FORCE1 + i] = forces[0, start + i]
             w[FORCE2 + i] = forces[1, start + i]
         limit_force(quarter, w)
-        kick_block(quarter, w)
+        kick_block(quarter, 1.0, 0, given, w)
         store_block(w, start, n_lanes, state)
 
 
@@ -618,23 +665,21 @@ def sum_powers(state, sums):
 
 
 @njit(cache=True, fastmath={"contract"}, error_model="numpy")
-def numbers_of_four_steps(path, group, key0, key1, w, bits):
+def numbers_of_four_steps(path, group, key0, key1, words, numbers):
     """Twelve standard normal numbers for every lane, three for each step of a group."""
     for part in range(N_NUMBERS):
-        standard_normals(path, N_NUMBERS * group + part, key0, key1, w, bits)
-        first = NUMBERS + N_STEPS * part * LANES
-        for i in range(N_STEPS * LANES):
-            w[first + i] = w[NORMAL + i]
+        counter = N_NUMBERS * group + part
+        rows = numbers[N_STEPS * part : N_STEPS * (part + 1)]
+        standard_normals(path, counter, key0, key1, words, rows)
 
 
 @njit(cache=True, fastmath={"contract"}, error_model="numpy")
-def noise_block(noise, numbers, w):
-    """Noise of κ, α and ᾱ, of the three normal numbers of this step at `numbers`."""
+def noise_block(noise, number, numbers, w):
+    """Noise of κ, α and ᾱ, of the three rows of `numbers` for the step `number`."""
     n11, n21, n22, n31, n32, n33 = noise
-    for i in range(N_NUMBERS * LANES):
-        w[NOISE1 + i] = w[numbers + i]
+    row = N_NUMBERS * number
     for i in range(LANES):
-        z1, z2, z3 = w[NOISE1 + i], w[NOISE2 + i], w[NOISE3 + i]
+        z1, z2, z3 = numbers[row, i], numbers[row + 1, i], numbers[row + 2, i]
         w[NOISE1 + i] = n11 * z1
         w[NOISE2 + i] = n21 * z1 + n22 * z2
         w[NOISE3 + i] = n31 * z1 + n32 * z2 + n33 * z3
@@ -709,7 +754,8 @@ def advance_smooth_paths(path, step, key, law, potential, shifts, trace, state):
     n_paths, n_steps, phased = state.shape[1], common.shape[0], weights.shape[1] > 0
     for block in prange((n_paths + LANES - 1) // LANES):
         w = np.zeros(N_SMOOTH_ROWS * LANES)
-        bits = w.view(np.int64)
+        numbers = np.zeros((N_NUMBERS * N_STEPS, LANES))
+        words = np.zeros((N_STEPS, LANES), np.int64)
         start = block * LANES
         n_lanes = min(LANES, n_paths - start)
         load_smooth_block(state, start, n_lanes, w)
@@ -719,13 +765,13 @@ def advance_smooth_paths(path, step, key, law, potential, shifts, trace, state):
             number = (step + j) & 3
             if j == 0 or number == 0:
                 group = (step + j) >> 2
-                numbers_of_four_steps(path + start, group, key[0], key[1], w, bits)
+                numbers_of_four_steps(path + start, group, *key, words, numbers)
             if phased:
                 displace_block(own[j, 0], w)
             translate_block(0.5 * ds, common[j, 0, 0], common[j, 0, 1], w)
             force_block(kind, first, second, w)
             limit_force(0.25 * ds, w)
-            noise_block(noise, NUMBERS + N_NUMBERS * number * LANES, w)
+            noise_block(noise, number, numbers, w)
             turn_block(ds, turning, spread, common[j, 1, 0], common[j, 1, 1], w)
             rotate_block(w)
             if phased:
@@ -753,7 +799,7 @@ def turn_paths(law, numbers, forces, shift, state):
     ds, weights, noise, spread = law
     n_paths = state.shape[1]
     for block in prange((n_paths + LANES - 1) // LANES):
-        w = np.zeros(N_SMOOTH_ROWS * LANES)
+        w, given = np.zeros(N_SMOOTH_ROWS * LANES), np.zeros((N_NUMBERS, LANES))
         start = block * LANES
         n_lanes = min(LANES, n_paths - start)
         load_smooth_block(state, start, n_lanes, w)
@@ -761,9 +807,9 @@ def turn_paths(law, numbers, forces, shift, state):
             w[FORCE1 + i] = forces[0, start + i]
             w[FORCE2 + i] = forces[1, start + i]
             for number in range(N_NUMBERS):
-                w[NUMBERS + number * LANES + i] = numbers[number, start + i]
+                given[number, i] = numbers[number, start + i]
         limit_force(0.25 * ds, w)
-        noise_block(noise, NUMBERS, w)
+        noise_block(noise, 0, given, w)
         turn_block(ds, weights, spread, shift[0], shift[1], w)
         rotate_block(w)
         store_smooth_block(w, start, n_lanes, state)

@@ -1,6 +1,5 @@
 """Kernels of the sampler: random numbers, elementary functions, threads."""
 
-import inspect
 import math
 
 import numpy as np
@@ -65,21 +64,25 @@ def cases():
     """Name of a kernel: list of argument tuples."""
     w, n = work_array(), 3
     state, together = random_state(n), in_phase(np.full((5, 2, 2), 0.01))
-    step = (0.2, *QUADRATIC, together.common[0], w)
+    normals = np.random.default_rng(7).normal(size=(4, kernels.LANES))
+    words = np.zeros((4, kernels.LANES), np.int64)
+    step = (0.2, QUADRATIC, together.common[0], 2.5, 3, normals, w)
     return {
         "philox_round": [(1, 2, 3, 4, *KEY)],
         "philox": [(1, 2, 3, 4, *KEY), (2**32 - 1, 0, 2**31, 7, *KEY)],
         "cosine_sine": [(0.3,), (-3.1,)],
-        "tanh_ratio": [(0.01,), (200.0,)],
+        "cosine_sine_of_quarter": [(0.3,), (-1.5,)],
+        "hyperbolic": [(0.01,), (12.0,)],
+        "half_angle": [(0.2,), (-0.5,)],
+        "minus_twice_logarithm": [(3.7, 0.0), (2.0**31 + 0.5, 32.0)],
         "turns_taken": [(1.0, -1.0, 0.5), (-1.0, 1.0, -0.2), (1.0, -1.0, -0.5)],
-        "standard_normals": [(2**40 + 3, 17, *KEY, w, w.view(np.int64))],
+        "standard_normals": [(2**40 + 3, 17, *KEY, words, normals)],
         "translate_block": [(0.1, 0.02, -0.03, w)],
         "force_block": [(*potential, w) for potential in POTENTIALS],
         "limit_force": [(0.1, w), (40.0, w)],
         "load_weights": [(np.arange(2.0 * n).reshape(2, n), 0, n, w)],
         "displace_block": [(np.array([[0.1, -0.2], [0.3, 0.4]]), w)],
-        "angle_block": [(kernels.NORMAL + kernels.LANES, 2.5, w)],
-        "kick_block": [(0.1, w)],
+        "kick_block": [(0.1, 2.5, 1, normals, w)],
         "rotate_block": [(w,)],
         "splitting_step": [step],
         "euler_step": [step],
@@ -107,9 +110,11 @@ def smooth_cases(w, n, together):
     """Those of the smooth model."""
     state, rng = random_smooth_state(n), np.random.default_rng(5)
     numbers, forces = rng.normal(size=(3, n)), rng.normal(size=(2, n))
+    of_four = rng.normal(size=(12, kernels.LANES))
+    words = np.zeros((4, kernels.LANES), np.int64)
     return {
-        "numbers_of_four_steps": [(2**40 + 3, 17, *KEY, w, w.view(np.int64))],
-        "noise_block": [(LAW.noise, kernels.NUMBERS + 3 * kernels.LANES, w)],
+        "numbers_of_four_steps": [(2**40 + 3, 17, *KEY, words, of_four)],
+        "noise_block": [(LAW.noise, 3, of_four, w)],
         "turn_block": [(0.2, LAW.weights, LAW.spread, 0.01, -0.02, w)],
         "load_smooth_block": [(state, 0, n, w)],
         "store_smooth_block": [(w, 0, n, state)],
@@ -131,9 +136,6 @@ PARALLEL = [
 def called(function, arguments):
     """What a call returns and leaves in its array arguments."""
     mine = [np.copy(a) if isinstance(a, np.ndarray) else a for a in arguments]
-    names = list(inspect.signature(getattr(function, "py_func", function)).parameters)
-    if "bits" in names:
-        mine[names.index("bits")] = mine[names.index("w")].view(np.int64)
     result = function(*mine)
     returned = [] if result is None else np.atleast_1d(result)
     floats = [a for a in mine if isinstance(a, np.ndarray) and a.dtype == np.float64]
@@ -296,12 +298,70 @@ def test_cosine_and_sine_are_exact_to_rounding():
     np.testing.assert_allclose(values[:, 1], np.sin(angles), rtol=0, atol=1e-15)
 
 
-def test_the_hyperbolic_tangent_is_exact_to_rounding_and_never_above_one():
-    x = np.geomspace(1e-6, kernels.FARTHEST, 500)
-    ratio = np.array([n / d for n, d in map(kernels.tanh_ratio, x**2)])
-    # 5e-15 is the error of the approximant where it is largest, near x = 6.
-    np.testing.assert_allclose(x * ratio, np.tanh(x), rtol=1e-14, atol=0)
-    assert (x * ratio).max() < 1
+def test_cosine_and_sine_of_a_quarter_turn_and_logarithms_are_exact_to_rounding():
+    angles = np.linspace(-math.pi / 2, math.pi / 2, 2001)
+    values = np.array([kernels.cosine_sine_of_quarter(angle) for angle in angles])
+    # One rounding of the result and one of the first step before it.
+    np.testing.assert_allclose(values[:, 0], np.cos(angles), rtol=0, atol=4e-16)
+    np.testing.assert_allclose(values[:, 1], np.sin(angles), rtol=0, atol=4e-16)
+    numbers = np.concatenate([np.geomspace(0.5, 2**32 - 0.5, 500), 1 + angles / 1e4])
+    logarithms = [kernels.minus_twice_logarithm(number, 0.0) for number in numbers]
+    # Of both signs; near one relative to itself.
+    np.testing.assert_allclose(logarithms, -2 * np.log(numbers), rtol=1e-15, atol=0)
+
+
+def test_hyperbolic_functions_are_exact_to_rounding_and_keep_their_order():
+    x = np.geomspace(1e-6, 2 * kernels.FARTHEST, 500)
+    values = np.array([kernels.hyperbolic((one / 8) ** 2) for one in x])
+    cosh, one, sinh = values.T
+    # 5e-15 is the error of the approximant where it is largest, near x = 12.
+    np.testing.assert_allclose(x * sinh / cosh, np.tanh(x), rtol=1e-14, atol=0)
+    np.testing.assert_allclose(one / cosh, 1 / np.cosh(x), rtol=0, atol=1e-14)
+    assert (np.diff(cosh / one) > 0).all()
+    assert (one > 0).all()
+
+
+def test_the_half_of_every_angle_is_exact_to_rounding():
+    turns = np.linspace(-0.5, 0.5, 1001)
+    c, s = np.array([kernels.half_angle(turn) for turn in turns]).T
+    length = np.hypot(c, s)
+    # The approximant of tan is off by 5e-16 of an angle at most, at half a turn.
+    np.testing.assert_allclose(c / length, np.cos(np.pi * turns), rtol=0, atol=1e-15)
+    np.testing.assert_allclose(s / length, np.sin(np.pi * turns), rtol=0, atol=1e-15)
+    assert (c > -1e-15).all()
+
+
+def exact_kick(alpha, force, t, angle):
+    """The exact flow over t/2, a turn by the angle, the exact flow over t/2."""
+    halfway = exact_rotation(alpha, force, 0.5 * t) + angle
+    return exact_rotation(halfway, force, 0.5 * t)
+
+
+@pytest.mark.parametrize("force", [(0.0, 0.0), (1.0, -2.0), (-6.0, 8.0)])
+def test_one_formula_turns_by_force_noise_and_force_and_counts_the_turns(force):
+    rng, n, t = np.random.default_rng(8), 400, 0.3
+    alpha, angles = rng.uniform(-7, 7, n), 4.0 * rng.normal(size=n)
+    state = np.stack([*np.zeros((2, n)), np.cos(alpha), np.sin(alpha), np.zeros(n)])
+    state[4] = np.rint((alpha - np.arctan2(state[3], state[2])) / (2 * np.pi))
+    forces = np.tile(np.array(force)[:, None], (1, n))
+    kernels.kick_paths(0.25 * t, angles, forces, state)
+    turned = np.arctan2(state[3], state[2]) + 2 * np.pi * state[4]
+    # Angles of up to 20 are known to 4e-15, which the flow stretches by up to e^{gt}.
+    np.testing.assert_allclose(
+        turned, exact_kick(alpha, force, t, angles), rtol=0,
+        atol=2e-14 * math.exp(math.hypot(*force) * t),
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("size", [1e-3, 1.0, 1e3, 1e300])
+def test_along_the_force_and_against_it_a_tangent_stays_where_it_is(size):
+    # Both are fixed points of the flow; the first repels, and nothing may become 0/0.
+    state = np.zeros((5, 2))
+    state[2] = 1.0, -1.0
+    kernels.kick_paths(0.1, np.zeros(2), np.array([[size] * 2, [0.0] * 2]), state)
+    # Normalised to rounding.
+    np.testing.assert_allclose(state[2], [1.0, -1.0], rtol=0, atol=3e-16)
+    assert not state[3:].any()
 
 
 def exact_rotation(alpha, force, t):
