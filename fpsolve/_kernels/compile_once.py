@@ -11,6 +11,8 @@ goes for numba's own functions, such as `np.empty` for one kind of shape.
 from contextlib import contextmanager
 from functools import wraps
 
+from llvmlite import ir
+from llvmlite.binding import parse_assembly
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler_lock import global_compiler_lock
 
@@ -61,31 +63,37 @@ def compile_once(compiled):
 
 @contextmanager
 def parts_unfinished(codegen):
-    """Let `codegen` make libraries of parts that are only linked.
-
-    Numba's constants of a function (its environment) are told where they are once the
-    kernel that contains the function is there.
-    """
+    """Let `codegen` make libraries of parts that are only linked."""
     if "create_library" in vars(codegen):
         yield
         return
-    create, tell, untold = codegen.create_library, codegen.set_env, []
+    create, tell = codegen.create_library, codegen.set_env
 
     def create_library(name, **options):
         part = name not in _kernels and any(known in name for known in PARTS)
         return PartOfKernel(codegen, name) if part else create(name, **options)
 
     def set_env(name, environment):
-        if codegen._engine.is_symbol_defined(name):
-            tell(name, environment)
-        else:
-            untold.append((name, environment))
+        if not codegen._engine.is_symbol_defined(name):
+            define(codegen, name)
+        tell(name, environment)
 
     codegen.create_library, codegen.set_env = create_library, set_env
     try:
         yield
     finally:
         del codegen.create_library, codegen.set_env
-        for name, environment in untold:
-            if codegen._engine.is_symbol_defined(name):
-                tell(name, environment)
+
+
+def define(codegen, name):
+    """Make the pointer to what numba keeps of a part (its environment).
+
+    It would be in the part's machine code; what the part is linked into shares it.
+    """
+    module = codegen._create_empty_module(name)
+    pointer = ir.IntType(8).as_pointer()
+    variable = ir.GlobalVariable(module, pointer, name)
+    variable.linkage = "common"
+    variable.initializer = ir.Constant(pointer, None)
+    codegen._engine.add_module(parse_assembly(str(module)))
+    codegen._engine.finalize_object()

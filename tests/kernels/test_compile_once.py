@@ -1,5 +1,7 @@
 """Of a parallel kernel, machine code is made once; what is linked into it has none."""
 
+import ctypes
+
 import numba
 import numpy as np
 import pytest
@@ -84,3 +86,16 @@ def test_a_part_is_found_by_its_name():
         assert type(part) is PartOfKernel
         assert type(codegen.create_library("inverses")) is JITCodeLibrary
     assert type(codegen.create_library("__numba_parfor_gufunc")) is JITCodeLibrary
+
+
+def test_what_numba_keeps_of_a_part_is_found_from_the_kernel():
+    target = numba.njit(inverses).targetctx
+    codegen, kept = target.codegen(), numba.core.environment.lookup_environment
+    compiling.njit(parallel=True)(inverses)(np.ones(3), np.zeros(3))
+    name = next(
+        name for name in codegen._engine._defined_symbols
+        if name.startswith("_ZN08NumbaEnv") and "__numba_parfor_gufunc" in name
+        and kept(name) is not None
+    )  # fmt: skip
+    address = codegen._engine.get_global_value_address(name)
+    assert ctypes.c_void_p.from_address(address).value == id(kept(name))
