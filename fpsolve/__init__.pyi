@@ -30,6 +30,7 @@ from .errors import EquilibriumError as EquilibriumError
 from .errors import FileFormatError as FileFormatError
 from .errors import FlowRangeError as FlowRangeError
 from .errors import FpsolveError as FpsolveError
+from .errors import FrictionError as FrictionError
 from .errors import GridMismatchError as GridMismatchError
 from .errors import MassCorrectionError as MassCorrectionError
 from .errors import MassDriftError as MassDriftError

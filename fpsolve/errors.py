@@ -29,6 +29,7 @@ __all__ = [
     "FlowRangeError",
     "ForkedProcessError",
     "FpsolveError",
+    "FrictionError",
     "GridMismatchError",
     "MassCorrectionError",
     "MassDriftError",
@@ -409,6 +410,21 @@ class EdgeLengthError(RunError):
     _says = (
         "no step of {dt:g} s was found from t = {t:g} s on in which the fibre keeps "
         "its length, an edge is off by a part of {stretched:.2g}; take more `n_steps`."
+    )
+
+
+@stated
+class FrictionError(EdgeLengthError):
+    """A step of a fibre that rubs on its belt was not found."""
+
+    left: int = said(
+        "Nodes that change between sticking and sliding, or move what was left behind."
+    )
+    _says = (
+        "no step of {dt:g} s was found from t = {t:g} s on in which friction on the "
+        "belt is settled: {left} nodes change between sticking, sliding and the air, "
+        "or move what was left behind, and an edge is off by a part of {stretched:.2g};"
+        " take more `n_steps`, or more `friction`."
     )
 
 

@@ -13,7 +13,16 @@ from numpy.typing import NDArray
 from fpsolve._kernels.banded import REACH, solve_banded_rows
 from fpsolve._kernels.compiling import njit
 
-__all__ = ["REACH", "Chain", "Iterate", "Pull", "Step", "largest_stretch", "newton"]
+__all__ = [
+    "REACH",
+    "Chain",
+    "Iterate",
+    "Pull",
+    "Step",
+    "largest_stretch",
+    "newton",
+    "step_rows",
+]
 
 
 class Chain(NamedTuple):
@@ -143,14 +152,8 @@ def _edge_row(chain, iterate, i, row):
 
 
 @njit(cache=True, error_model="numpy")
-def newton(chain, step, iterate, pull, rows, known):
-    """Improve `moved` and `tension` in place; returns how far, and what is left.
-
-    That is the largest displacement added and the largest stretch, NaN if one is. rows
-    (4n + 4, 17), known (4n + 4,): room, whatever it holds. By Gauss without pivots: as
-    long as inertia, bending and tension resist every displacement, every row has a
-    pivot, the last of an edge because it comes after both of its ends.
-    """
+def step_rows(chain, step, iterate, pull, rows, known):
+    """The linear system of an iteration, rows (4n + 4, 17), known (4n + 4,)."""
     n = chain.masses.size - 1
     middle = np.zeros((n + 5, 3))
     for i in range(n + 1):
@@ -163,6 +166,19 @@ def newton(chain, step, iterate, pull, rows, known):
         _node_rows(chain, step, iterate, pull, i, middle, rows, known)
         if i > 0:
             known[4 * i + 3] = _edge_row(chain, iterate, i - 1, rows[4 * i + 3])
+
+
+@njit(cache=True, error_model="numpy")
+def newton(chain, step, iterate, pull, rows, known):
+    """Improve `moved` and `tension` in place; returns how far, and what is left.
+
+    That is the largest displacement added and the largest stretch, NaN if one is. rows
+    (4n + 4, 17), known (4n + 4,): room, whatever it holds. By Gauss without pivots: as
+    long as inertia, bending and tension resist every displacement, every row has a
+    pivot, the last of an edge because it comes after both of its ends.
+    """
+    n = chain.masses.size - 1
+    step_rows(chain, step, iterate, pull, rows, known)
     solve_banded_rows(rows, known)
     largest = 0.0
     for i in range(n + 1):

@@ -148,8 +148,10 @@ class Belt:
 
     A node that reaches the belt has its velocity from then on, as by friction without
     limit; the impact is plastic. What lies cannot move, and nothing is below the belt.
-    Loops of a stiff fibre stand on it. Suction through a belt presses them down: after
-    a settling time they are taken to lie under where they stand.
+    With `friction` μ, Coulomb's law, what lies is held by at most μ times what presses
+    it down, slides where more pulls at it, and rises where it is lifted. Loops of a
+    stiff fibre stand on the belt. Suction through it presses them down: after a
+    settling time they are taken to lie under where they stand.
 
     Parameters
     ----------
@@ -159,11 +161,13 @@ class Belt:
         In m.
     settling_time : float
         In s, positive; infinite by default.
+    friction : float
+        μ, not negative; infinite by default: what lies sticks.
 
     Raises
     ------
     ValueError
-        If a number is not finite, or the time not positive.
+        If a number is not finite, the time not positive, or the friction negative.
 
     References
     ----------
@@ -175,12 +179,18 @@ class Belt:
     speed: float
     height: float = 0.0
     settling_time: float = math.inf
+    friction: float = math.inf
 
     def __post_init__(self) -> None:
         keep_checked(self, check_finite, "speed", "height")
         if not self.settling_time > 0:
             raise ValueError(
                 f"`settling_time` must be positive, got {shown(self.settling_time)}."
+            )
+        if not self.friction >= 0:
+            raise ValueError(
+                f"`friction` must be non-negative, got {shown(self.friction)}; "
+                "`math.inf` lets all that lies stick."
             )
 
     def to_dict(self) -> dict[str, float]:

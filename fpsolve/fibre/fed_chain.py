@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -43,6 +43,8 @@ class FedChain:
         Where, in the frame of the belt, and since when; NaN in the air.
     newest : int
         Number of the first node, counted from 0 at the end of the fibre.
+    sliding : ndarray of bool, shape (n + 1,)
+        Which of those that lie slide on the belt; by default none.
     """
 
     r: Array
@@ -51,6 +53,11 @@ class FedChain:
     laid: NDArray[np.bool_]
     on_belt: Array
     newest: int
+    sliding: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, dtype=bool))
+
+    def __post_init__(self) -> None:
+        if not self.sliding.size:
+            object.__setattr__(self, "sliding", np.zeros_like(self.laid))
 
     def fed(self, place: Array, velocity: Array) -> FedChain:
         """With one node more at its beginning, which the nozzle holds."""
@@ -61,17 +68,23 @@ class FedChain:
             np.concatenate([[False], self.laid]),
             np.concatenate([np.full((1, 3), np.nan), self.on_belt]),
             self.newest + 1,
+            np.concatenate([[False], self.sliding]),
         )
 
-    def trimmed(self, belt: Belt | None, t: float) -> tuple[FedChain, Array]:
+    def trimmed(
+        self, belt: Belt | None, t: float, last: int | None = None
+    ) -> tuple[FedChain, Array]:
         """Without what lies behind the part in the air, and its `on_belt`, in turn.
 
         What two nodes have parted from that part for longer than `settling_time` is
-        left behind as it stands: nothing that happens before them moves it.
+        left behind as it stands: nothing that happens before them moves it. `last`
+        is the last node to keep, by default two behind what is in the air.
         """
-        last = int(np.flatnonzero(~self.laid)[-1]) + KEPT_NODES
+        if last is None:
+            last = int(np.flatnonzero(~self.laid)[-1]) + KEPT_NODES
         if belt is not None and belt.settling_time < t:
             settled = self.on_belt[:, 2] <= t - belt.settling_time
+            settled &= ~self.sliding
             pairs = np.flatnonzero(settled[:-1] & settled[1:])
             last = min([last, *(pairs[:1] + 1)])
         last = max(last, FEWEST_EDGES)
@@ -80,7 +93,7 @@ class FedChain:
         kept = slice(0, last + 1)
         chain = FedChain(
             self.r[kept], self.v[kept], self.tension[:last], self.laid[kept],
-            self.on_belt[kept], self.newest,
+            self.on_belt[kept], self.newest, self.sliding[kept],
         )  # fmt: skip
         behind = self.on_belt[:last:-1].copy()
         standing = np.isnan(behind[:, 2])
@@ -243,6 +256,10 @@ class FedStep:
         held[0] = True
         arrest(r, self.numbers(len(r) - 1).masses, held, v)
         return v
+
+    def trimmed(self, chain: FedChain, t: float) -> tuple[FedChain, Array]:
+        """Without what is left behind, and that, as `FedChain.trimmed` has it."""
+        return chain.trimmed(self.belt, t)
 
     def after_feeding(self, chain: FedChain, t: float) -> FedChain:
         """With the nodes that the nozzle has let go until then."""

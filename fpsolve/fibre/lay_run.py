@@ -150,7 +150,7 @@ class LayRun:
             self.draws.draw(number)
         chain = advanced(record.chain, t[number - 1], t[number] - t[number - 1])
         record.series[:, number] = *self._seen(chain), advanced.rejected
-        record.chain, left = chain.trimmed(self.step.belt, t[number])
+        record.chain, left = self.step.trimmed(chain, t[number])
         record.behind.append(left)
         if number % self.every == 0 or number == t.size - 1:
             record.shapes.append(record.chain.r)

@@ -30,6 +30,7 @@ from fpsolve.fibre.lay_keeper import Keeper
 from fpsolve.fibre.lay_run import LayRun, Record
 from fpsolve.fibre.random_force import StochasticForce, checked_law
 from fpsolve.fibre.rest import equilibrium
+from fpsolve.fibre.rubbing import RubbingStep
 from fpsolve.fibre.shapes import checked_shape, checked_vectors
 from fpsolve.fibre.string import String
 
@@ -67,9 +68,10 @@ def lay_down(
     length h follow each other with the velocity of the nozzle and v_in along its
     direction, and are let go as they leave it, so that neither their momentum nor their
     bending jumps, and v_in t of fibre have come out at time t. Nodes that reach the
-    belt stick to it. Between both the motion is that of `simulate`: edges keep their
-    length to 1e-12. Of order 1 in the step, in which a node lands sooner or later, and
-    in the edges. Loops that meet do not notice each other.
+    belt stick to it, or rub on it by Coulomb's law if it has a `friction`. Between both
+    the motion is that of `simulate`: edges keep their length to 1e-12. Of order 1 in
+    the step, in which a node lands sooner or later, and in the edges. Loops that meet
+    do not notice each other.
 
     A step that Newton's method does not find, as where a fibre buckles, is taken in two
     halves, and these again, so that it depends on nothing but the arguments.
@@ -138,6 +140,9 @@ def lay_down(
         If Newton's method does not converge, however short the step is, as for a belt
         that pulls at a straight fibre faster than it is spun. Its `solution` is the
         fibre until then.
+    FrictionError
+        Likewise if it is not settled what sticks and what slides, or if what was left
+        behind on the belt would slide.
     FileFormatError
         If the checkpoint is damaged, or no fibre.
 
@@ -202,6 +207,8 @@ def _checked_step(
         check_kind("belt", belt, Belt, "Belt(speed) is one")
     if air is not None:
         check_kind("air", air, AirFlow, "AirFlow(velocity) is one")
+    if belt is not None and not math.isinf(belt.friction):
+        return RubbingStep(string, belt, theta, air)
     return FedStep(string, belt, theta, air)
 
 

@@ -131,9 +131,10 @@ class _Last(Part):
     def write(self, result: Any) -> Stored:
         last, stored = result.last, {"newest": result.last.newest}
         for name, dims in _OF_LAST.items():
-            # Files have no truth values.
+            # Files have no truth values; 2 is what lies and slides.
             values = np.asarray(getattr(last, name))
-            values = values.astype(np.int8) if name == "laid" else values
+            if name == "laid":
+                values = values.astype(np.int8) + last.sliding
             about = {"long_name": f"{name.replace('_', ' ')} at the end of the run"}
             stored[f"last_{name}"] = (dims, values, about)
         return stored
@@ -145,6 +146,7 @@ class _Last(Part):
             found[name] = source.dataset[f"last_{name}"].values
         n = found["tension"].size + 1
         check_counts("last_tension", n, found["laid"].size, "`last_laid`")
+        found["sliding"] = found["laid"] == 2
         found["laid"] = found["laid"].astype(bool)
         return {"last": FedChain(**found, newest=int(source.about["newest"]))}
 

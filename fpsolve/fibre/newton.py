@@ -21,7 +21,7 @@ from fpsolve.errors import EdgeLengthError
 from fpsolve.fibre.air import AirFlow
 from fpsolve.fibre.string import String
 
-__all__ = ["Wind", "found_step"]
+__all__ = ["Wind", "found_step", "no_pull"]
 
 # Of an edge: deviations of its length that Newton's method leaves.
 KEPT = 1e-12
@@ -82,7 +82,7 @@ def found_step(
     """
     size = 4 * chain.masses.size
     rows, known = np.empty((size, 2 * REACH + 1)), np.empty(size)
-    pull = _none(chain.masses)
+    pull = no_pull(chain.masses)
     allowed, change = KEPT * chain.edge, 0.0
     for iteration in range(1, MOST_ITERATIONS + 1):
         if wind is not None:
@@ -101,6 +101,6 @@ def found_step(
     raise EdgeLengthError(t, step.dt, float(left / chain.edge))
 
 
-def _none(masses: Array) -> Pull:
+def no_pull(masses: Array) -> Pull:
     """No force on any node."""
     return Pull(np.zeros((masses.size, 3)), np.zeros((masses.size, 3, 3)))

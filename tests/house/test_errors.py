@@ -102,6 +102,13 @@ EXAMPLES = [
         "length, an edge is off by a part of 0.03; take more `n_steps`.",
     ),
     (
+        errors.FrictionError(t=0.5, dt=0.1, stretched=0.03, left=3),
+        "no step of 0.1 s was found from t = 0.5 s on in which friction on the belt is "
+        "settled: 3 nodes change between sticking, sliding and the air, or move what "
+        "was left behind, and an edge is off by a part of 0.03; take more `n_steps`, "
+        "or more `friction`.",
+    ),
+    (
         errors.EquilibriumError(residual=1e-3, tolerance=1e-10),
         "no position of rest was found: a force of 0.001 of the weight and the "
         "stiffness is left, 1e-10 are allowed; give a `shape` that is nearer to it.",

@@ -38,7 +38,7 @@ def runs(problem: Problem) -> tuple[dict[str, Any], ...]:
 
 
 def solve(problem: Problem, *, tolerance: float) -> Result:
-    """Solve the benchmark problem; what is told is the bound of H."""
+    """Solve the benchmark problem; what is told is the error of H."""
     model = fp.LayDownModel(potential=fp.QuadraticPotential(), noise=problem.noise)
     law = fp.paths.GaussianLaw(MEAN, VARIANCE, ANGLE, CONCENTRATION)
     grid = fp.PhaseSpaceGrid(half_width=HALF_WIDTH, shape=SHAPE)

@@ -191,7 +191,7 @@ def semi_lagrangian_line(rows: Rows) -> str:
 
 
 def sectors_line(rows: Rows, noise: float, seconds: float) -> str:
-    """Sectors to an L1 error, and to a bound of H that is as small."""
+    """Sectors to an L1 error, and to a told error of H as small."""
     mine = sectors(rows)
     true = cheapest(mine, SECTORS_ERROR)
     bounds = [row | {"l1_error": max(row["l1_error"], row["told"])} for row in mine]
@@ -199,7 +199,7 @@ def sectors_line(rows: Rows, noise: float, seconds: float) -> str:
     reached = true is not None and true["cpu"] <= seconds
     return (
         f"{verdict(reached)} {cost(true).strip()}, aim {seconds:g} s: sectors to "
-        f"{SECTORS_ERROR:.0e} at A = {noise:g}; with a bound of H as small "
+        f"{SECTORS_ERROR:.0e} at A = {noise:g}; with a told error of H as small "
         f"{cost(told).strip()}"
     )
 
