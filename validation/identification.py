@@ -61,6 +61,10 @@ FULL = [
         (10.0, {}, BELT, 2000.0, 0.006),
         (10.0, {"curvature_noise": 200.0}, BELT, 5000.0, 0.02),
     )
+] + [
+    ({"sigma1": 1.0, "sigma2": 1.5, "noise": 0.3, "curvature_noise": 0.6}, BELT, length,
+     0.1)
+    for length in (300.0, 2000.0)
 ]  # fmt: skip
 N_FIBRES = {True: 3, False: 50}
 # Once in so many studies chance alone goes beyond the bounds; relative error of an
@@ -69,8 +73,8 @@ ONCE_IN, OF_ERRORS = 100, 0.2
 COVERED = {True: (0.7, 1.0), False: (0.90, 0.99)}
 KEPT = RESULTS / "identification-cases" / "fibres.jsonl"
 # What decides the numbers of a fibre.
-MODULES = ("functional_estimate", "increments", "quasi_newton", "sampling_error",
-           "surrogate")  # fmt: skip
+MODULES = ("coordinates", "curve_search", "functional_estimate", "increments",
+           "quasi_newton", "sampling_error", "second_order", "surrogate")  # fmt: skip
 
 
 def fibre(parameters: dict[str, float], curve: Any, length: float, ds: float,

@@ -7,6 +7,7 @@ import numpy as np
 from fpsolve._support.arrays import Array
 from fpsolve._support.checks import check_integer
 from fpsolve.paths.fibres.fibre_curve import FibreCurve
+from fpsolve.studies.identification.curve_search import CurveSearch
 from fpsolve.studies.identification.estimate import Estimate
 from fpsolve.studies.identification.increments import (
     NAMES,
@@ -46,6 +47,11 @@ def estimate_by_functional(
     The covariance is that of F over surrogates of the data's size, or by a block
     bootstrap of the data where that is larger, through the inverse slopes.
 
+    At little noise smooth fibres circle, and the largest Γ_α is that of k_max whatever
+    A is: F(P) folds. Where it does not answer to A, or the iterates do not settle, the
+    estimate is the mean of the parameters that √⟨ξ²⟩ and Γ_α, Γ_κ at four lags up to
+    k_max allow, see `curve_search`; `notes` say so.
+
     Parameters
     ----------
     fibre : FibreCurve
@@ -78,7 +84,10 @@ def estimate_by_functional(
     longest = usual_k_max(fibre) if k_max is None else k_max
     samples = check_integer("samples", samples, FEWEST_SAMPLES)
     search = Search(fibre, n, longest, samples, check_integer("seed", seed, 0))
-    logs, slopes = search.run()
+    solved = search.run()
+    if solved is None:
+        return _by_curves(search)
+    logs, slopes = solved
     drawn = log_functional(search.replicates(logs))[:n]
     n_drawn = drawn.shape[1]
     logs = logs + corrected(slopes, search.target - drawn.mean(axis=1))
@@ -87,15 +96,53 @@ def estimate_by_functional(
     inverse = np.linalg.pinv(slopes, rcond=1e-6)
     # Of the data, and of the mean of as many surrogates that is put equal to it.
     relative = inverse @ (spread * (1 + 1 / n_drawn)) @ inverse.T
+    notes = (f"k_max = {longest}: increments up to h = {longest * fibre.ds:g}",)
+    errors = np.sqrt(np.diag(relative))
+    parameters = _named(logs)
+    why = undetermined_of(parameters, errors, slopes)
+    return _estimate(search, logs, relative, notes, why)
+
+
+def _by_curves(search: Search) -> Estimate:
+    """Of Γ at several lags, where (24) has no solution that is told from others."""
+    curves = CurveSearch(search)
+    found = curves.run()
+    lags = ", ".join(f"{h:.3g}" for h in curves.h)
+    notes = (
+        f"k_max = {search.k_max}: the largest Γ_α up to h = "
+        f"{search.k_max * search.fibre.ds:g} do not determine the parameters; Γ at "
+        f"h = {lags} were met instead",
+    )
+    why = {
+        name: f"its standard error is {100 * error:.0f} % of it: √⟨ξ²⟩ and Γ at h = "
+        f"{lags} are nearly the same for other values; take a longer fibre"
+        for name, error in zip(NAMES, np.sqrt(np.diag(found.covariance)), strict=False)
+        if not error <= WEAKEST
+    }
+    search.history += curves.history
+    return _estimate(search, found.mean, found.covariance, notes, why)
+
+
+def _named(logs: Array) -> dict[str, float]:
+    return dict(zip(NAMES, np.exp(logs).tolist(), strict=False))
+
+
+def _estimate(
+    search: Search,
+    logs: Array,
+    relative: Array,
+    notes: tuple[str, ...],
+    undetermined: dict[str, str],
+) -> Estimate:
+    """Of logarithms and their covariance."""
     values = np.exp(logs)
-    parameters = dict(zip(NAMES, values.tolist(), strict=False))
     return Estimate(
-        parameters=parameters,
+        parameters=_named(logs),
         covariance=relative * np.outer(values, values),
         model=search.model(logs),
         history=np.array(search.history),
-        notes=(f"k_max = {longest}: increments up to h = {longest * fibre.ds:g}",),
-        undetermined=undetermined_of(parameters, np.sqrt(np.diag(relative)), slopes),
+        notes=notes,
+        undetermined=undetermined,
     )
 
 

@@ -7,7 +7,6 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from fpsolve._support.arrays import Array
-from fpsolve.errors import ToleranceError
 from fpsolve.model.fibre import FibreModel
 from fpsolve.paths.fibres.fibre_curve import FibreCurve
 from fpsolve.studies.identification.increments import (
@@ -39,6 +38,8 @@ CHANGE, N_MORE = 0.15, 4
 # Rounds of averaging, after each of which the measured slopes correct what is left, and
 # what may be left at the end.
 MOST_ROUNDS, LEFT = 4, 0.1
+# ∂ log max Γ_α/∂ log A of smooth fibres, below which they circle whatever A is.
+LEAST_ANSWER = 0.1
 # Largest relative standard error of a parameter that counts as determined; a singular
 # value of the slopes below its inverse moves nothing.
 WEAKEST_SLOPE = 0.02
@@ -96,27 +97,33 @@ class Search:
             self.surrogate.pieces(self.model(logs)), self.lags, self.fibre.ds
         )
 
-    def run(self) -> tuple[Array, Array]:
+    def run(self) -> tuple[Array, Array] | None:
         """Logarithms of the parameters, and the slopes ∂ log F/∂ log P there.
 
-        Raises
-        ------
-        ToleranceError
-            If the iterates do not settle.
+        None if the iterates do not settle, or where F does not answer to A.
         """
         logs = self._approached(self.target.copy())
+        # Before the rounds, for these take longer.
+        if not self._answers(logs):
+            return None
         for _ in range(MOST_ROUNDS):
             iterates, left = self._averaged(logs)
             slopes = self.slopes(iterates)
+            if self.n == 4 and not slopes[2, 2] > LEAST_ANSWER:
+                return None
             step = corrected(slopes, left)
             logs = iterates + step
             if np.abs(step).max() < LEFT:
                 return logs, slopes
-        raise ToleranceError(
-            float(np.abs(step).max()), LEFT,
-            "the functional of this fibre is that of no parameters near its own: look "
-            "at its increments by `increment_curves`, or take another model",
-        )  # fmt: skip
+        return None
+
+    def _answers(self, logs: Array) -> bool:
+        """Whether max Γ_α of smooth fibres grows with A."""
+        if self.n < 4:
+            return True
+        change = CHANGE * np.eye(4)[2]
+        ends = [self.residual(logs + sign * change, N_MORE)[2] for sign in (1, -1)]
+        return bool(ends[1] - ends[0] > 2 * CHANGE * LEAST_ANSWER)
 
     def _approached(self, logs: Array) -> Array:
         for _ in range(N_APPROACH):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -24,9 +26,12 @@ FEWEST = 10
 
 
 def bootstrap_covariance(
-    fibre: FibreCurve, lags: NDArray[np.int64], seed: int
+    fibre: FibreCurve,
+    lags: NDArray[np.int64],
+    seed: int,
+    numbers: Callable[[Squares], Array] = log_functional,
 ) -> Array | None:
-    """Covariance (4, 4) of log F by drawing blocks of the fibre again, or None.
+    """Covariance of log F, or other numbers, by drawing blocks of the fibre again.
 
     None where there are fewer than ten blocks of five k_max.
     """
@@ -43,7 +48,7 @@ def bootstrap_covariance(
         part[:, chosen].mean(axis=2)
         for part in (stacked.xi, stacked.angle, stacked.curvature)
     ))  # fmt: skip
-    return np.asarray(np.cov(log_functional(drawn)))
+    return np.asarray(np.cov(numbers(drawn)))
 
 
 def larger(covariance: Array, other: Array | None) -> Array:

@@ -30,7 +30,7 @@ LONGEST, LARGEST_TURN = 0.05, 0.1
 # model's turn at lag one is short by (1/4m²) of its variance, and Γ_κ of smooth fibres
 # with two steps by 0.4 % of it (measured, ± 0.2 %).
 FEWEST = 4
-# Units of σ that a fibre runs before it counts, from p_S and from other parameters.
+# Units of σ that a fibre runs before it counts, from p_S and from near parameters.
 FIRST_RUN, NEXT_RUN = 30.0, 6.0
 # Points of a sample in units of k_max.
 LONGEST_REACH = 20
@@ -60,10 +60,16 @@ class Surrogate:
     fibre : FibreCurve
         Whose Δs, reference curve and scatter of the points are taken.
     seed : int
+
+    Attributes
+    ----------
+    next_run : float
+        Units of σ that a fibre runs after other parameters before it counts.
     """
 
     def __init__(self, fibre: FibreCurve, seed: int) -> None:
         self.fibre = fibre
+        self.next_run = NEXT_RUN
         self.seeds = np.random.SeedSequence(seed)
         self.state: Array | None = None
         self.sigma = np.ones(2)
@@ -95,7 +101,7 @@ class Surrogate:
 
     def _run(self, model: FibreModel) -> int:
         """Points that do not count."""
-        reach = FIRST_RUN if self.state is None else NEXT_RUN
+        reach = FIRST_RUN if self.state is None else self.next_run
         return math.ceil(reach * max(_sigma(model)) / self.fibre.ds)
 
     def _start(self, model: Any, rng: np.random.Generator) -> Array:
