@@ -189,6 +189,7 @@ def test_a_belt_faster_than_the_fibre_is_spun_rubs_along_it():
     assert motion.stretched.max() <= 1e-12
 
 
+@pytest.mark.nightly
 def test_a_fibre_that_rubs_is_laid_kept_and_gone_on_with_to_the_same_bits(tmp_path):
     given = {"belt": Belt(0.3, friction=0.5), "estimate_error": False}
     whole = lay_down(spun(), 0.2, 60, **given)
