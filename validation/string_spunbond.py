@@ -171,13 +171,15 @@ def webs(curve: fp.FibreCurve, report: Report, name: str) -> None:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--quick", action="store_true", help="a few short metres")
+    parser.add_argument("--metres", type=float, default=40.0, help="of every fibre")
+    parser.add_argument("--edges", type=float, nargs="+", default=(2.0, 1.0), help="mm")
     parser.add_argument("--table", type=Path, help="write the flow, and nothing else")
     options = parser.parse_args()
     if options.table is not None:
         write_table(options.table)
         return
     report = Report("string_spunbond", options.quick)
-    cases = [Case(2e-3, 2e-5, 40.0), Case(1e-3, 1e-5, 40.0)]
+    cases = [Case(1e-3 * one, 1e-5 * one, options.metres) for one in options.edges]
     if options.quick:
         cases = [Case(4e-3, 4e-5, 4.0)]
     with tempfile.TemporaryDirectory() as folder:
@@ -192,9 +194,10 @@ def main() -> None:
         found.append(laid)
         check(case, laid, rows[-1], report)
     report.table(rows)
-    if not options.quick:
+    if not options.quick and len(rows) == 2:
         one, other = (row["std across (mm)"] for row in rows)
         report.check("width, 2 to 1 mm, relative", abs(other / one - 1), "<", 0.25)
+    if not options.quick:
         webs(found[-1].laid_curve(skip=SKIPPED), report, "string_spunbond")
     report.finish()
 

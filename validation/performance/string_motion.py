@@ -73,7 +73,7 @@ def main() -> None:
     quick = parser.parse_args().quick
     report = Report("string_motion", quick)
     rows = []
-    for n_edges, allowed in ((32, 60e-6), (64, 80e-6), (300, 240e-6)):
+    for n_edges, allowed in ((32, 60e-6), (64, 65e-6), (300, 130e-6)):
         for name, air in (("none", None), ("uniform", fibre.AirFlow((1.0, 0, 0)))):
             step, iteration = costs(n_edges, air, 10 if quick else 50)
             rows.append(
