@@ -107,7 +107,7 @@ class Tables:
         print("\n".join(wins.winner_lines(self.rows(noise))))
 
     def sectors(self, noise: float) -> None:
-        """What sectors cost at one noise, their error, and what they tell of that of H."""
+        """What sectors cost at one noise, their error, and what they tell of H."""
         print(f"{'':17} {'CPU s':>8} {'L1 error':>9} {'told of H':>10}")
         for row in wins.sectors(self.rows(noise)):
             costs = f"{row['cpu']:8.3g} {row['l1_error']:9.2e} {row['told']:10.2e}"
