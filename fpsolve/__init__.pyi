@@ -36,6 +36,7 @@ from .errors import MassCorrectionError as MassCorrectionError
 from .errors import MassDriftError as MassDriftError
 from .errors import MemoryLimitError as MemoryLimitError
 from .errors import NegativeDensityError as NegativeDensityError
+from .errors import NoiseStrengthError as NoiseStrengthError
 from .errors import NonFiniteDensityError as NonFiniteDensityError
 from .errors import NonFinitePathError as NonFinitePathError
 from .errors import NotRepeatableError as NotRepeatableError

@@ -35,6 +35,7 @@ __all__ = [
     "MassDriftError",
     "MemoryLimitError",
     "NegativeDensityError",
+    "NoiseStrengthError",
     "NonFiniteDensityError",
     "NonFinitePathError",
     "NotRepeatableError",
@@ -425,6 +426,22 @@ class FrictionError(EdgeLengthError):
         "belt is settled: {left} nodes change between sticking, sliding and the air, "
         "or move what was left behind, and an edge is off by a part of {stretched:.2g};"
         " take more `n_steps`, or more `friction`."
+    )
+
+
+@stated
+class NoiseStrengthError(RunError):
+    """Noise turns the edges of a fibre by more in one step than a direction bears."""
+
+    t: float = said("Time at which the step begins.")
+    dt: float = said("Length of the step.")
+    amplitude: float = said("Of the noise, in N s^½/m^½.")
+    turn: float = said("Root mean square of the angle, in rad.")
+    n_steps: int = said("Number of steps in which it is at most ½.")
+    _says = (
+        "`turbulence` of {amplitude:.3g} N s^½/m^½ turns edges by {turn:.3g} rad in a "
+        "step of {dt:.3g} s from t = {t:.3g} s on, after which their directions mean "
+        "nothing; take at least {n_steps} `n_steps`, in which they turn by ½."
     )
 
 

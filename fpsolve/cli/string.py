@@ -16,6 +16,7 @@ from fpsolve.cli.options import NoFigures, Out
 
 if TYPE_CHECKING:
     from fpsolve.cli.config.string import StringConfig
+    from fpsolve.fibre.ends import Belt
     from fpsolve.fibre.laid import LayDown
     from fpsolve.paths.fibres.fibre_curve import FibreCurve
 
@@ -78,18 +79,27 @@ def string(
 
 def print_lay_down(found: LayDown) -> None:
     """Print what was spun, what lies, and what the steps kept."""
-    belt, nozzle, error = found.belt, found.nozzle, found.position_error
+    nozzle, error = found.nozzle, found.position_error
     print_pairs([
         ("spun", f"{found.fed:.4g} m at {nozzle.speed:g} m/s in {found.t[-1]:g} s"),
-        ("belt", "none" if belt is None else f"{belt.speed:g} m/s"),
+        ("belt", _belt(found.belt)),
         ("in the air", f"{found.free_length[-1]:.4g} m"),
         ("tension", f"{found.largest_tension.max():.3g} N at most"),
+        ("at the nozzle", f"{found.nozzle_tension[1:].mean():.3g} N on average"),
         ("steps", f"{found.t.size - 1}, {found.iterations[1:].mean():.3g} iterations "
                   f"each, {int(found.rejected.sum())} in halves"),
         ("edges", f"keep their length to {found.stretched.max():.1e}"),
         ("position error",
          f"{error:.2g} m" if math.isfinite(error) else "not estimated"),
     ])  # fmt: skip
+
+
+def _belt(belt: Belt | None) -> str:
+    """Its speed, and its friction if there is a limit to it."""
+    if belt is None:
+        return "none"
+    rubs = f", friction {belt.friction:g}" if math.isfinite(belt.friction) else ""
+    return f"{belt.speed:g} m/s{rubs}"
 
 
 def _laid(frame: Frame, chosen: StringConfig, kept: str) -> LayDown:

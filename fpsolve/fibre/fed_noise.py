@@ -8,6 +8,7 @@ import numpy as np
 
 from fpsolve._support.arrays import Array
 from fpsolve.fibre.air import AirFlow
+from fpsolve.fibre.edge_turns import EdgeTurns
 from fpsolve.fibre.fed_chain import FedChain
 from fpsolve.fibre.random_force import Noise, StochasticForce, noise_force
 from fpsolve.fibre.string import String
@@ -37,6 +38,8 @@ class FedDraws:
     n_nodes : int
         Of the whole run.
     pieces : int
+    turns : EdgeTurns or None
+        What judges the strength of the noise, once in every step.
     """
 
     law: StochasticForce
@@ -46,8 +49,10 @@ class FedDraws:
     seed: int
     n_nodes: int
     pieces: int = 1
+    turns: EdgeTurns | None = None
     noise: Noise = field(init=False, repr=False)
     _mean: Array = field(init=False, repr=False)
+    _judged: bool = field(default=False, init=False, repr=False)
 
     def __post_init__(self) -> None:
         size, time = min(self.n_nodes, MOST_NOISES), self.law.correlation_time
@@ -55,7 +60,7 @@ class FedDraws:
 
     def draw(self, number: int) -> None:
         """Noise of the step of this number; to be asked for 1, 2, … in turn."""
-        self._mean = self.noise.mean(number)
+        self._mean, self._judged = self.noise.mean(number), False
 
     def force(self, chain: FedChain, masses: Array, t: float) -> Array:
         """On every node, in N, shape (n, 3), throughout the step or a part of it.
@@ -64,6 +69,8 @@ class FedDraws:
         ------
         ValueError
             If more nodes are in the air than there are noises.
+        NoiseStrengthError
+            If the noise is too strong for the steps.
         """
         size = self.noise.size
         if not masses.size <= size:
@@ -74,4 +81,7 @@ class FedDraws:
         numbers = chain.newest - np.arange(masses.size)
         lengths = masses / self.string.line_density
         amplitudes = self.law.amplitudes(self.string, self.air, chain.r, chain.v, t)
+        if self.turns is not None and not self._judged:
+            self._judged = True
+            self.turns.check(amplitudes, chain.r, chain.v, t, ~chain.laid)
         return noise_force(lengths, amplitudes, self._mean[numbers % size])

@@ -22,6 +22,7 @@ from fpsolve._support.checks import (
 from fpsolve._support.progress import ProgressCallback, reporting
 from fpsolve.evolution.call import Call, recorded
 from fpsolve.fibre.air import AirFlow
+from fpsolve.fibre.edge_turns import EdgeTurns
 from fpsolve.fibre.ends import Belt, Free, Nozzle
 from fpsolve.fibre.fed_chain import FedChain, FedStep
 from fpsolve.fibre.fed_noise import FedDraws
@@ -98,7 +99,8 @@ def lay_down(
         What pulls at it with the force a per length.
     turbulence : RandomForce or TurbulentForce, optional
         A of A·dw_{s,t}, noise that is the same for the whole of each of the given
-        steps, also where these are taken in halves.
+        steps, also where these are taken in halves. Noise that turns edges in one step
+        by more than 0.5 rad is warned of.
     seed : int, optional
         Of `turbulence`: the same seed and steps repeat the fibre bit by bit.
     tolerance : float, optional
@@ -143,8 +145,16 @@ def lay_down(
     FrictionError
         Likewise if it is not settled what sticks and what slides, or if what was left
         behind on the belt would slide.
+    NoiseStrengthError
+        If the noise of a step turns edges by more than 2 rad; it says how many steps
+        are enough. Its `solution` is the fibre until then.
     FileFormatError
         If the checkpoint is damaged, or no fibre.
+
+    Warns
+    -----
+    UserWarning
+        If the noise of a step turns edges by more than 0.5 rad.
 
     References
     ----------
@@ -177,7 +187,7 @@ def lay_down(
     if estimate_error and n_steps % 2 == 0:
         # Of steps twice as long, whose errors are four times as large.
         if draws is not None:
-            draws = replace(draws, dt=2 * draws.dt, pieces=2)
+            draws = replace(draws, dt=2 * draws.dt, pieces=2, turns=None)
         run, half = (
             LayRun(step, n_steps, 4 * allowed, draws),
             Record.first(t[::2], first),
@@ -226,7 +236,8 @@ def _checked_draws(
     law, seed = drawn
     string = step.string
     n_nodes = string.n_edges + 2 + math.ceil(step.nozzle.speed * t_end / string.edge)
-    return FedDraws(law, string, step.air, t_end / n_steps, seed, n_nodes)
+    turns = EdgeTurns(law, string, step.air, step.theta, t_end, n_steps)
+    return FedDraws(law, string, step.air, t_end / n_steps, seed, n_nodes, turns=turns)
 
 
 def _first_chain(

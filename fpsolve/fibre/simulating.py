@@ -76,6 +76,8 @@ def simulate(
         What pulls at it with the force a per length, taken at the middle of every step.
     turbulence : RandomForce or TurbulentForce, optional
         A of A·dw_{s,t}, white noise in s and t (Itô) or correlated noise in its place.
+        Small vibrations have the right law at every step if θ = ½, so that, other than
+        in `lay_down`, its strength is not judged by the step.
     seed : int, optional
         Of `turbulence`: the same seed and step repeat the motion bit by bit.
     tolerance : float, optional

@@ -77,6 +77,31 @@ def test_a_fibre_on_the_belt_is_that_of_the_library(fpsolve, config, tmp_path):
     assert f"{curve.length:.4g} m, every 0.02 m" in result.stdout
 
 
+def test_a_belt_with_friction_is_told_and_so_is_the_pull_at_the_nozzle(
+    fpsolve, config, tmp_path
+):
+    config.write_text(SPUN.replace("speed = 0.3", "speed = 0.3\nfriction = 0.5"))
+    words = ["--t-end", 0.2, "--n-steps", 40, "--no-figures", "--out", "out"]
+    result = fpsolve("string", config, *words)
+    assert result.exit_code == 0, result.output
+    assert "0.3 m/s, friction 0.5" in result.stdout
+    found = fp.load(tmp_path / "out" / "spun.nc")
+    assert found.belt == fibre.Belt(0.3, friction=0.5)
+    # Something lies, and rubs.
+    assert len(found.landed) > 3
+    assert f"{found.nozzle_tension[1:].mean():.3g} N on average" in result.stdout
+
+
+def test_noise_that_is_too_strong_for_the_steps_is_a_mistake_that_is_told(
+    fpsolve, config, tmp_path
+):
+    config.write_text(SPUN.replace("k = 0.05", "k = 500.0"))
+    words = ["--t-end", 3.0, "--n-steps", 60, "--out", "out"]
+    said = "`n_steps`, in which they turn by"
+    assert_mistake(fpsolve("string", config, *words), said, code=1)
+    assert not (tmp_path / "out").exists()
+
+
 def test_the_configuration_that_was_used_is_kept(fpsolve, config, tmp_path):
     words = ["--t-end", 0.1, "--n-steps", 20, "--no-figures", "--out", "out"]
     result = fpsolve("string", config, *words)

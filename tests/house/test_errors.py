@@ -109,6 +109,12 @@ EXAMPLES = [
         "or more `friction`.",
     ),
     (
+        errors.NoiseStrengthError(0.5, 4e-3, 3.5e-4, 2.1, 700),
+        "`turbulence` of 0.00035 N s^½/m^½ turns edges by 2.1 rad in a step of 0.004 s "
+        "from t = 0.5 s on, after which their directions mean nothing; take at least "
+        "700 `n_steps`, in which they turn by ½.",
+    ),
+    (
         errors.EquilibriumError(residual=1e-3, tolerance=1e-10),
         "no position of rest was found: a force of 0.001 of the weight and the "
         "stiffness is left, 1e-10 are allowed; give a `shape` that is nearer to it.",
