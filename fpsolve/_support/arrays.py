@@ -16,11 +16,18 @@ __all__ = [
     "check_finite_numbers",
     "check_floats",
     "check_numbers",
+    "read_only",
 ]
 
 # What most of the package is about, in the words of its signatures.
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
+
+
+def read_only(values: Array) -> Array:
+    """The array itself, in which nothing can be written any more."""
+    values.setflags(write=False)
+    return values
 
 
 def check_numbers(name: str, values: Any) -> Array:

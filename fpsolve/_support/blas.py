@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import threading
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from functools import cache
 from typing import Any
 
@@ -32,7 +32,8 @@ def one_blas_thread() -> Iterator[None]:
     limit = _limit
     limit.enter()
     try:
-        with _libraries("thread").limit(limits=1, user_api="blas"):
+        own = _libraries("thread")
+        with own.limit(limits=1, user_api="blas") if len(own) else nullcontext():
             yield
     finally:
         limit.leave()

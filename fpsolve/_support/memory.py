@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import math
+import time
+from typing import NamedTuple
+
 import psutil
 
 from fpsolve._support.checks import check_tolerance
@@ -11,6 +15,9 @@ __all__ = ["allowed_memory", "check_memory", "required_memory"]
 
 # Diagnostics, tables in one dimension less, and the interpreter's own buffers.
 OVERHEAD = 64 * 2**20
+# To ask the system takes as long as several steps on few cells. What it said holds for
+# so many seconds for who needs no more than this share of it.
+SECONDS, SHARE = 1.0, 1 / 16
 
 
 def required_memory(
@@ -32,6 +39,22 @@ def required_memory(
     return int(nbytes * (n_arrays + n_saved * n_passes)) + OVERHEAD
 
 
+class _Reading(NamedTuple):
+    """What the system had available, and when."""
+
+    available: float
+    when: float
+
+    def allows(self, required: int) -> bool:
+        """Whether so much is there without asking again."""
+        is_new = time.monotonic() - self.when <= SECONDS
+        return is_new and required <= SHARE * self.available
+
+
+NO_READING = _Reading(0.0, -math.inf)
+_last = NO_READING
+
+
 def check_memory(required: int, limit: int | None = None, *remedy: str) -> None:
     """Raise MemoryLimitError if `required` bytes are more than may be used.
 
@@ -43,7 +66,12 @@ def check_memory(required: int, limit: int | None = None, *remedy: str) -> None:
     *remedy : str
         What takes less memory, when it is not a coarser grid.
     """
+    global _last
+    if limit is None and _last.allows(required):
+        return
     available = allowed_memory(limit)
+    if limit is None:
+        _last = _Reading(available, time.monotonic())
     if not required <= available:
         raise MemoryLimitError(required, int(available), *remedy)
 

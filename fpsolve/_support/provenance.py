@@ -54,13 +54,18 @@ class Stopwatch:
         """Wall and CPU time."""
         return time.perf_counter() - self.wall, time.process_time() - self.cpu
 
-    def provenance(self, n_steps: int | None = None) -> dict[str, Any]:
-        """Versions, environment, date, seconds, number of steps, ready for a file."""
+    def provenance(
+        self, n_steps: int | None = None, known: dict[str, Any] | None = None
+    ) -> dict[str, Any]:
+        """Versions, environment, date, seconds, number of steps, ready for a file.
+
+        With the environment that is `known`, where it has been looked up.
+        """
         wall, cpu = self.seconds()
         steps = {} if n_steps is None else {"n_steps": n_steps}
         return {
             "versions": versions(),
-            "environment": environment(),
+            "environment": environment() if known is None else known,
             "date": datetime.now(UTC).isoformat(timespec="seconds"),
             "wall_seconds": wall,
             "cpu_seconds": cpu,

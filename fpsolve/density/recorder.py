@@ -177,6 +177,8 @@ class Recorder:
             self._check_mass(total)
         self.first: dict[str, float] = {}
         self.start: dict[str, float] = {}
+        self.floors: dict[float, float] = {}
+        self.quiet = self.inverse is None or total <= 1.0 + _TOO_MUCH
         # All records, one after the other: 8 bytes a number.
         self.numbers = array("d")
 
@@ -184,6 +186,12 @@ class Recorder:
         """One with no records yet, which shares what only depends on the run."""
         other = copy.copy(self)
         other.first, other.numbers, other.lowest = {}, array("d"), math.inf
+        return other
+
+    def anew(self) -> Recorder:
+        """One for another run of the same model on the same grid."""
+        other = self.fresh()
+        other.start, other.floors = {}, {}
         return other
 
     def record(
@@ -275,7 +283,10 @@ class Recorder:
         if self.reference is None:
             return float("nan")
         start = self.first.get("mass", 1.0)
-        return diagnostics.entropy_floor(self.grid, self.reference, start)
+        if start not in self.floors:
+            found = diagnostics.entropy_floor(self.grid, self.reference, start)
+            self.floors[start] = found
+        return self.floors[start]
 
     @property
     def columns(self) -> tuple[str, ...]:

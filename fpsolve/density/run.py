@@ -87,7 +87,7 @@ class Run:
             )
             partial = self._partial("interrupted", message, done)
             raise RunInterrupted(partial) from None
-        return self._solution("finished", "")
+        return self._solution("finished", "", done)
 
     def snapshot(self, n_saved: int) -> Snapshot:
         """Return what is needed to go on from here, with so many densities saved."""
@@ -148,7 +148,9 @@ class Run:
         )
         return replace(done[-1], status=status, message=message)
 
-    def _solution(self, status: str, message: str) -> Solution:
+    def _solution(
+        self, status: str, message: str, done: Sequence[Solution] = ()
+    ) -> Solution:
         recorder, saves = self.recorder, self.schedule.saves[: self.keeper.n_saved]
         return Solution(
             model=self.scheme.model,
@@ -161,15 +163,17 @@ class Run:
             entropy_floor=recorder.floor(),
             status=status,
             message=message,
-            provenance=self._provenance(),
+            provenance=self._provenance(done),
             initial_density=self._kept_start(),
             reference=self.reference,
             call=self.call,
         )
 
-    def _provenance(self) -> dict[str, Any]:
+    def _provenance(self, done: Sequence[Solution]) -> dict[str, Any]:
         """What made the result; of a scheme on a device, which one."""
-        found = self.watch.provenance(self.state.n_steps)
+        # All passes of a run have their threads in common, and all else of it.
+        known = done[-1].provenance["environment"] if done else None
+        found = self.watch.provenance(self.state.n_steps, known)
         origin = getattr(self.scheme, "origin", None)
         return found if origin is None else {**found, "arrays": origin}
 

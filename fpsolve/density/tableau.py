@@ -38,13 +38,12 @@ def combined(runs: Sequence[Solution]) -> Solution:
     """
     first, finest = runs[0], runs[-1]
     asymptotic = resolved(first)
-    reach = WINDOW * min(finest.grid.half_widths)
+    reach, rounding = WINDOW * min(finest.grid.half_widths), _rounding(runs)
     series, errors = levelled_series(
-        [one.series for one in runs], reach, asymptotic, _rounding(runs),
-        is_extrapolated,
-    )  # fmt: skip
+        [one.series for one in runs], reach, asymptotic, rounding, is_extrapolated
+    )
     densities, distances = _densities(runs, asymptotic)
-    errors["density_l1"] = distances + _rounding(runs)
+    errors["density_l1"] = distances + rounding
     provenance = dict(finest.provenance)
     for name in ("wall_seconds", "cpu_seconds", "n_steps"):
         provenance[name] = sum(one.provenance[name] for one in runs)

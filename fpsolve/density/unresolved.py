@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
-from fpsolve._support.arrays import Array
+from fpsolve._support.arrays import Array, read_only
 from fpsolve.density.solution import Solution
 from fpsolve.grids.phase_space import PhaseSpaceGrid
 
@@ -48,15 +49,17 @@ def unresolved_by_axis(p: Array, grid: PhaseSpaceGrid) -> Array:
     terms = []
     for axis, n in enumerate(p.shape):
         rows = waves(n)
-        along = np.moveaxis(p, axis, 0).reshape(n, -1)
+        others = (other for other in range(p.ndim) if other != axis)
+        along = p.transpose(axis, *others).reshape(n, -1)
         terms.append(float(np.abs(rows @ along).sum()))
     return np.array(terms) * grid.cell_volume
 
 
+@lru_cache(maxsize=16)
 def waves(n: int) -> Array:
     """Rows that give the amplitudes of the shortest waves on n cells, times n.
 
-    Of the unmatched wave of an even n only the sine lives at cell centres.
+    Of the unmatched wave of an even n only the sine lives at cell centres. Read-only.
     """
     centres = (np.arange(n) + 0.5) * (2 * np.pi / n)
     rows = []
@@ -65,4 +68,4 @@ def waves(n: int) -> Array:
         rows.append(np.sin(mode * centres) * (1.0 if unmatched else 2.0))
         if not unmatched:
             rows.append(2.0 * np.cos(mode * centres))
-    return np.array(rows)
+    return read_only(np.array(rows))

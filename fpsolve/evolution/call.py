@@ -58,6 +58,8 @@ IDENTITY = "identity"
 WHERE = frozenset(
     ("client", "workers", "directory", "progress", "memory_limit", "checkpoint")
 )
+# What JSON has of its own; looked for first, since most of a call is of these.
+_PLAIN = frozenset((bool, int, float, str))
 # Longer arrays are variables of the dataset.
 _LONGEST = 256
 
@@ -162,6 +164,8 @@ def described(value: Any, name: str, arrays: Arrays) -> Any:
         Of the argument, from which long arrays get theirs.
     arrays : dict
     """
+    if value is None or type(value) in _PLAIN:
+        return value
     own = vars(type(value)).get("_recorded")
     if own is not None:
         parts = getattr(value, "_recorded_parts", None) or value.to_dict
@@ -193,7 +197,7 @@ def described(value: Any, name: str, arrays: Arrays) -> Any:
         return _array(value, name, arrays)
     if isinstance(value, np.generic):
         value = value.item()
-    if value is None or isinstance(value, bool | int | float | str):
+    if isinstance(value, bool | int | float | str):
         return value
     code = getattr(value, "__qualname__", type(value).__qualname__)
     return {USER_CODE: code, IDENTITY: digest_or_none(value)}

@@ -6,10 +6,11 @@ One rule for the equation, its reduced forms and its stationary densities.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from functools import lru_cache
 
 import numpy as np
 
-from fpsolve._support.arrays import Array
+from fpsolve._support.arrays import Array, read_only
 
 __all__ = [
     "ROUNDING",
@@ -52,15 +53,16 @@ def weights_of(divisors: Sequence[int]) -> list[float]:
     ]
 
 
+@lru_cache(maxsize=16)
 def tableau(levels: int) -> tuple[Array, Array]:
     """Weights of the last two entries of Aitken's and Neville's tableau in ds².
 
     Of u_{ds}, u_{ds/2}, …, u_{ds/n}: the combination of all, of order 2n, and that of
-    all but the first, of order 2n − 2; shapes (n,).
+    all but the first, of order 2n − 2; shapes (n,), read-only.
     """
     divisors = range(1, levels + 1)
     best, lower = weights_of(divisors), weights_of(divisors[1:])
-    return np.array(best), np.array([0.0, *lower])
+    return read_only(np.array(best)), read_only(np.array([0.0, *lower]))
 
 
 def safety(levels: int) -> float:

@@ -72,7 +72,7 @@ class PhaseSpaceGrid(CellGrid):
         (width1, width2), (n_xi1, n_xi2, n_alpha) = self.half_widths, self.shape
         return 2 * width1 / n_xi1, 2 * width2 / n_xi2, 2 * math.pi / n_alpha
 
-    @property
+    @cached_property
     def cell_volume(self) -> float:
         """Volume d1 d2 dα of a cell."""
         return math.prod(self.spacing)

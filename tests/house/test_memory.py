@@ -1,12 +1,14 @@
 """How much memory a run takes, and what it is refused for."""
 
 import tracemalloc
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from fpsolve import initial
-from fpsolve._support.memory import required_memory
+from fpsolve._support import memory
+from fpsolve._support.memory import check_memory, required_memory
 from fpsolve.density.schemes import drift_kick, semi_lagrangian
 from fpsolve.density.solve import solve
 from fpsolve.errors import MemoryLimitError
@@ -63,3 +65,46 @@ def test_a_run_stays_within_its_densities(scheme, options, most):
     assert peak / grid.nbytes <= most + 0.1
     # The estimate that refuses runs is an honest upper bound.
     assert peak <= required_memory(grid.nbytes, built.n_arrays, 0)
+
+
+@pytest.fixture
+def readings(monkeypatch):
+    """What the system says, how often it was asked, and the clock."""
+    told = SimpleNamespace(available=2**30, n_asked=0, now=0.0)
+
+    def asked():
+        told.n_asked += 1
+        return SimpleNamespace(available=told.available)
+
+    monkeypatch.setattr(memory.psutil, "virtual_memory", asked)
+    monkeypatch.setattr(memory.time, "monotonic", lambda: told.now)
+    monkeypatch.setattr(memory, "_last", memory.NO_READING)
+    return told
+
+
+def test_what_the_system_said_serves_small_runs_for_a_second(readings):
+    for readings.now in (0.0, 0.5, 1.0):
+        check_memory(2**26)
+    assert readings.n_asked == 1
+    readings.now = 1.001
+    check_memory(2**26)
+    assert readings.n_asked == 2
+
+
+def test_who_needs_more_than_a_sixteenth_asks_anew_and_is_refused(readings):
+    check_memory(2**26)
+    readings.available = 2**26
+    with pytest.raises(MemoryLimitError, match="but 64 MiB are available"):
+        check_memory(2**26 + 1)
+    # And the next one, however little it needs, is judged by what was said last.
+    check_memory(2**22)
+    assert readings.n_asked == 2
+    with pytest.raises(MemoryLimitError, match="but 64 MiB are available"):
+        check_memory(2**28)
+
+
+def test_a_limit_is_kept_whatever_the_system_said(readings):
+    check_memory(2**20)
+    with pytest.raises(MemoryLimitError, match=r"but 0\.5 MiB are available"):
+        check_memory(2**20, 2**19)
+    assert readings.n_asked == 1

@@ -78,10 +78,7 @@ class DensityForm:
     def start(self, p0: Array) -> State:
         """State of a run that begins at the density p0."""
         p0 = self.grid.check(p0, "p0")
-        values = np.empty_like(p0)
-        plane = self.grid.shape[:2]
-        weight = np.ones(plane) if self.weight is None else self.weight
-        scale_rows(p0, 1.0 / weight, values)
+        values = self._divided(p0)
         if self.nearest is not None:
             # No mass is there, but its neighbours are interpolated from it: a constant
             # h must be one there too.
@@ -90,6 +87,14 @@ class DensityForm:
             self._check_contrast(values, self.weight)
         mass = self._sums(p0).sum() * self.grid.cell_volume
         return State(values, np.empty_like(p0), mass)
+
+    def _divided(self, p0: Array) -> Array:
+        """A copy of p0, over the weight if there is one."""
+        if self.weight is None:
+            return p0.copy()
+        values = np.empty_like(p0)
+        scale_rows(p0, 1.0 / self.weight, values)
+        return values
 
     def _sums(self, values: Array) -> Array:
         sums = np.empty(self.grid.shape[:2])

@@ -59,6 +59,7 @@ class RotationDiffusion:
         angle = np.arctan2(self.force[1], self.force[0]).ravel()
         self.direction = np.stack([np.cos(angle), np.sin(angle)])
         self.transforms = angular_transforms(grid)
+        self.still = np.ones(self.strength.size)
         self._tables: dict[float, RotationTable] = {}
 
     def __call__(self, p: Array, s: float, ds: float, out: Array) -> None:
@@ -100,7 +101,7 @@ class RotationDiffusion:
     def reaction(self, s: float, ds: float) -> Array:
         """Factor exp(−(γ(s + ds) − γ(s))·∇B) of the balanced form; (n1 n2,)."""
         if not self.balanced or self.model.curve.fixed:
-            return np.ones(self.strength.size)
+            return self.still
         moved1, moved2 = self.model.curve.displacement(s, s + ds)
         exponent = -(moved1 * self.force[0] + moved2 * self.force[1])
         factor: Array = np.exp(exponent).ravel()

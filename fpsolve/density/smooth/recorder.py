@@ -5,7 +5,9 @@ from __future__ import annotations
 import math
 from array import array
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from typing import Any
+from weakref import WeakKeyDictionary
 
 from fpsolve._support.arrays import Array
 from fpsolve.density.recorder import Record, Recorder
@@ -15,6 +17,11 @@ from fpsolve.grids.smooth import SmoothPhaseSpaceGrid
 from fpsolve.grids.smooth_sums import SmoothFunctionals
 
 __all__ = ["SmoothRecorder", "recorder_for"]
+
+
+# Of runs of a scheme without a reference: p_S and the circulation, a few arrays over ξ,
+# for as long as the scheme lives.
+_known: WeakKeyDictionary[Any, Recorder] = WeakKeyDictionary()
 
 
 class SmoothRecord(Record):
@@ -68,6 +75,7 @@ class SmoothRecorder(Recorder):
         self.falls, self.lowest = False, math.inf
         self.circulation = self.uncounted = None
         self.first, self.start, self.numbers = {}, {}, array("d")
+        self.floors = {}
 
 
 def recorder_for(
@@ -77,4 +85,20 @@ def recorder_for(
     smooth = isinstance(scheme.grid, SmoothPhaseSpaceGrid)
     usual = SmoothRecorder if smooth else Recorder
     kind: type[Recorder] = getattr(scheme, "kind_of_recorder", usual)
-    return kind(scheme.model, scheme.grid, reference, observed)
+    if kind is not Recorder or reference is not None or observed:
+        return kind(scheme.model, scheme.grid, reference, observed)
+    # A user's own scheme need not be one that a dictionary can hold.
+    with suppress(TypeError):
+        return _remembered(scheme).anew()
+    return Recorder(scheme.model, scheme.grid)
+
+
+def _remembered(scheme: Any) -> Recorder:
+    known = _known.get(scheme)
+    if known and known.model is scheme.model and known.grid is scheme.grid:
+        return known
+    made = Recorder(scheme.model, scheme.grid)
+    # What warns is to warn every time.
+    if made.quiet:
+        _known[scheme] = made
+    return made
