@@ -171,7 +171,7 @@ class Belt:
 
     References
     ----------
-    [KMW09]_, section 2.2.3.
+    [KMW09]_, section 2.2.3; [ALC91]_ for the iterations that settle friction.
     """
 
     _recorded: ClassVar[str] = "belt"
