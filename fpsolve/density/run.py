@@ -155,7 +155,7 @@ class Run:
         return Solution(
             model=self.scheme.model,
             grid=self.scheme.grid,
-            scheme=describe_scheme(self.scheme),
+            scheme=done[-1].scheme if done else describe_scheme(self.scheme),
             ds=self.schedule.ds,
             series=recorder.series(),
             saved_s=np.array([self.schedule.s(step) for step in saves]),
