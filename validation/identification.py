@@ -95,7 +95,8 @@ def estimated(parameters: dict[str, float], data: fp.FibreCurve,
     kind = "smooth" if "curvature_noise" in parameters else "basic"
     try:
         found = estimate_by_functional(data, kind, seed=seed)
-    except ToleranceError as refused:
+    except (ToleranceError, ValueError) as refused:
+        # The latter of fibres that are too short for how far they go.
         return {"refused": str(refused)}
     return {
         "parameters": found.parameters, "covariance": found.covariance.tolist(),

@@ -268,7 +268,10 @@ class FedStep:
             out -= self.string.edge * (chain.newest - self.string.n_edges)
             if not out >= (1 - ROUNDING) * self.string.edge:
                 return chain
-            chain = chain.fed(*self.held(chain.newest + 1, t))
+            # An edge behind the last, and not where `held` has it to rounding of all
+            # that has come out, which edges would show.
+            behind = self.string.edge * np.array(self.nozzle.direction)
+            chain = chain.fed(chain.r[0] - behind, self.held(chain.newest, t)[1])
 
 
 def put_down(three: Array, edge: float) -> Array:

@@ -61,8 +61,10 @@ def rubbed_step(
             return iteration
         if not np.isfinite(left):
             break
-        if wind is not None:
-            wind.pull(chain, step, iterate, t, pull)
+        if wind is not None and not wind.meets(
+            chain, step, iterate, t, pull, iteration + 1
+        ):
+            break
         if force is not None:
             pull.force[...] = force if wind is None else pull.force + force
         change, switched = rub(

@@ -17,7 +17,7 @@ from fpsolve._kernels.chain import (
 )
 from fpsolve._kernels.drag import Drag, pull_chain
 from fpsolve._support.arrays import Array
-from fpsolve.errors import EdgeLengthError
+from fpsolve.errors import EdgeLengthError, FlowRangeError
 from fpsolve.fibre.air import AirFlow
 from fpsolve.fibre.string import String
 
@@ -62,6 +62,32 @@ class Wind:
         rate = iterate.moved / step.dt
         pull_chain(self._drag, middle, rate, wind, lengths, *pull)
 
+    def meets(
+        self,
+        chain: Chain,
+        step: Step,
+        iterate: Iterate,
+        t: float,
+        pull: Pull,
+        turn: int,
+    ) -> bool:
+        """As `pull`; False where an iteration has led out of the flow.
+
+        A fibre that begins the first there has left the flow itself.
+
+        Raises
+        ------
+        FlowRangeError
+            In the first iteration.
+        """
+        try:
+            self.pull(chain, step, iterate, t, pull)
+        except FlowRangeError:
+            if turn == 1:
+                raise
+            return False
+        return True
+
 
 def found_step(
     chain: Chain,
@@ -85,8 +111,10 @@ def found_step(
     pull = no_pull(chain.masses)
     allowed, change = KEPT * chain.edge, 0.0
     for iteration in range(1, MOST_ITERATIONS + 1):
-        if wind is not None:
-            wind.pull(chain, step, iterate, t, pull)
+        if wind is not None and not wind.meets(
+            chain, step, iterate, t, pull, iteration
+        ):
+            break
         if force is not None:
             pull.force[...] = force if wind is None else pull.force + force
         before = change

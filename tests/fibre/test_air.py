@@ -8,6 +8,7 @@ import xarray as xr
 from scipy.optimize import brentq
 
 import fpsolve as fp
+from fpsolve._kernels.chain import Iterate, Step
 from fpsolve.fibre import (
     AirFlow,
     Free,
@@ -16,6 +17,8 @@ from fpsolve.fibre import (
     drag_force,
     simulate,
 )
+from fpsolve.fibre.newton import Wind, no_pull
+from fpsolve.fibre.theta_step import string_chain
 
 NOWHERE = (0.0, 0.0, 0.0)
 AIR = {"density": 1.2, "viscosity": 1.5e-5}
@@ -136,6 +139,18 @@ def test_a_fibre_that_leaves_the_table_is_stopped():
     ) as e:
         simulate(fibre, 5.0, 500, air=air, estimate_error=False)
     assert max(np.abs(e.value.position)) > 1
+
+
+def test_an_iteration_that_strays_from_the_table_fails_its_step_and_not_the_run():
+    fibre = String(0.5, **THIN, start=Hinged(NOWHERE), end=Free(), n_edges=4)
+    wind, chain = Wind(AirFlow.from_dataset(table()), fibre), string_chain(fibre)
+    r, still = fibre.s[:, None] * np.array([0.0, 0.0, -1.0]), np.zeros((5, 3))
+    within, astray = (Iterate(r, still, one, np.zeros(4)) for one in (still, still + 9))
+    step, pull = Step(0.1, 0.5, 0.0), no_pull(chain.masses)
+    assert wind.meets(chain, step, within, 0.0, pull, 2)
+    assert not wind.meets(chain, step, astray, 0.0, pull, 2)
+    with pytest.raises(fp.FlowRangeError, match="enlarge the table"):
+        wind.meets(chain, step, astray, 0.0, pull, 1)
 
 
 def test_the_same_flow_as_numbers_function_and_table_moves_a_fibre_alike():

@@ -42,6 +42,25 @@ def test_a_fibre_that_is_fed_straight_down_hangs_by_its_weight():
     np.testing.assert_allclose(motion.largest_tension[1:], weight, rtol=1e-10)
 
 
+def test_edges_come_out_with_their_length_however_much_has_come_out_before():
+    nozzle = Nozzle((0.1, 0.2, 0.5), (0.6, 0, -0.8), 40.0)
+    string = hanging(nozzle, length=0.02, n_edges=10)
+    # After a kilometre, whose last digits are 1e-13 m: 6e-11 of an edge of 2 mm.
+    newest = 500_000
+    t = string.edge * (newest + 1.001 - 10) / 40.0
+    step = FedStep(string, None, 0.6, None)
+    first = step.held(newest, t)[0]
+    r = first + string.s[:, None] * np.array(nozzle.direction)
+    chain = FedChain(
+        r, 0 * r, np.zeros(10), np.zeros(11, bool), np.full((11, 3), np.nan), newest
+    )
+    fed = step.after_feeding(chain, t)
+    assert len(fed.r) == 12
+    edge = np.linalg.norm(fed.r[1] - fed.r[0])
+    # Rounding of places of half a metre.
+    assert edge / string.edge == pytest.approx(1.0, abs=2e-13)
+
+
 def test_what_comes_out_brings_its_momentum():
     nozzle = Nozzle(NOWHERE, (0.6, 0, -0.8), 1.0, (0.05, 0.02), 30.0)
     string = hanging(nozzle, stiffness=0.0)

@@ -68,13 +68,25 @@ def estimate_smooth(curve: FibreCurve) -> Estimate:
 
 
 def smooth_maximum(likelihood: Likelihood) -> Maximum:
-    """The largest likelihood in (1/σ1², 1/σ2², ln A, ln R)."""
-    at = max((_start(likelihood, likelihood.ds * x) for x in _LENGTHS), key=likelihood)
+    """The largest likelihood in (1/σ1², 1/σ2², ln A, ln R).
+
+    Where a filter of trial has no digits left, as of a force that grows without bound
+    along a fibre that goes far, the search does not start.
+    """
+    starts = [_start(likelihood, likelihood.ds * x) for x in _LENGTHS]
+    finite = [start for start in starts if np.isfinite(start).all()]
+    if not finite:
+        raise ValueError(
+            "`curve` must stay near its reference curve, but the filter of no "
+            "relaxation length has digits left along it; see that `curve` is the right "
+            "one, and that points are not too far apart."
+        )
+    at = max(finite, key=likelihood)
     scale = expected_errors(likelihood, math.exp(at[2]))
     return maximum(likelihood, at, scale)
 
 
 def _start(likelihood: Likelihood, relaxation_length: float) -> Array:
-    """Least squares for a given R."""
+    """Least squares for a given R; NaN if there are none."""
     at = least_squares(likelihood, relaxation_length)
     return np.array([*at.strength, math.log(at.noise), math.log(relaxation_length)])

@@ -18,7 +18,10 @@ __all__ = ["least_squares"]
 
 
 def least_squares(likelihood: Likelihood, relaxation_length: float) -> Parameters:
-    """(1/σ1², 1/σ2²) and A for a given R, by generalised least squares."""
+    """(1/σ1², 1/σ2²) and A for a given R, by generalised least squares.
+
+    NaN where the innovations of a trial overflow.
+    """
     strengths = ((0.0, 0.0), (1.0, 0.0), (0.0, 1.0))
     unforced, *forced = (
         likelihood.densities(Parameters(b, 1.0, relaxation_length), exact_points=True)[
@@ -27,6 +30,8 @@ def least_squares(likelihood: Likelihood, relaxation_length: float) -> Parameter
         for b in strengths
     )
     columns: Array = np.stack([unforced - one for one in forced], axis=1)
+    if not (np.isfinite(columns).all() and np.isfinite(unforced).all()):
+        return Parameters((np.nan, np.nan), np.nan, relaxation_length)
     b, *_ = np.linalg.lstsq(columns, unforced, rcond=None)
     noise = float(np.sqrt(np.mean((unforced - columns @ b) ** 2)))
     return Parameters((float(b[0]), float(b[1])), noise, relaxation_length)
