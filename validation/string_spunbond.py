@@ -150,9 +150,12 @@ def check(case: Case, laid: fibre.LayDown, row: dict[str, Any], report: Report) 
     name = f"edges of {1e3 * case.edge:g} mm"
     report.check(f"{name}: stretch", float(laid.stretched.max()), "<", 1e-12)
     report.check(f"{name}: CPU seconds a metre", row["CPU s/m"], "<", 10.0)
-    lies = case.edge * len(laid.landed) + float(laid.free_length[-1])
-    lacking = abs(0.1 + case.metres - lies)
-    report.check(f"{name}: fibre lost, in edges", lacking / case.edge, "<", 5.0)
+    # Of the nodes that have come out every one lies, or is in the chain.
+    lies = len(laid.landed) + int((~laid.last.laid).sum())
+    between = int(laid.last.laid.sum())
+    came = round((0.1 + case.metres) / case.edge)
+    lost = max(came - lies - between, 0)
+    report.check(f"{name}: fibre lost, in edges", lost, "<", 2)
 
 
 def webs(curve: fp.FibreCurve, report: Report, name: str) -> None:
@@ -198,7 +201,11 @@ def main() -> None:
         one, other = (row["std across (mm)"] for row in rows)
         report.check("width, 2 to 1 mm, relative", abs(other / one - 1), "<", 0.25)
     if not options.quick:
-        webs(found[-1].laid_curve(skip=SKIPPED), report, "string_spunbond")
+        try:
+            webs(found[-1].laid_curve(skip=SKIPPED), report, "string_spunbond")
+        except ValueError as refused:
+            # Loops that the edges do not resolve have no angles.
+            report.table([{"not identified": str(refused)}])
     report.finish()
 
 
